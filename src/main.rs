@@ -1,0 +1,3 @@
+//! The `rayforest` program.
+
+fn main() {}

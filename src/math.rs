@@ -1,0 +1,1 @@
+//! Own numeric kernels that give the same bits on every CPU.

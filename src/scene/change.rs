@@ -1,0 +1,1 @@
+//! What an edit touches, found by comparing two scenes field by field.

@@ -1,0 +1,262 @@
+//! What the user wrote: a plain value, compared, cloned and edited freely, that knows nothing of rays.
+//!
+//! Every struct here is destructured without `..` in `fields.rs` (names, ranges, reading, writing)
+//! and in `change.rs` (what an edit of the field costs): a new field does not compile until both
+//! are decided.
+
+pub mod change;
+pub mod factor;
+mod fields;
+pub mod mesh;
+pub mod read;
+pub mod write;
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::color::Rgb;
+use mesh::Mesh;
+
+/// A whole scene. Lengths are in one unit of the user's choice, colours linear Rec. 709.
+///
+/// The order of `lights`, `materials` and `solids` is the order of the scene file; materials are
+/// referred to by their index. Names are unique within their list and never influence the picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Light that reaches every surface from everywhere; multiplies each material's `ambient`.
+    pub ambient_light: Rgb,
+    /// Size and exposure of the picture.
+    pub picture: Picture,
+    /// Where the eye is and what it sees.
+    pub camera: Camera,
+    /// What a ray sees that leaves the scene.
+    pub background: Background,
+    /// How far and how finely rays are traced.
+    pub trace: Trace,
+    /// Point and directional lights, in file order.
+    pub lights: Vec<Light>,
+    /// Materials, in file order.
+    pub materials: Vec<Material>,
+    /// Solids and surfaces, in file order.
+    pub solids: Vec<Solid>,
+}
+
+/// `[picture]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Width and height in pixels, each 1 … [`MAX_SIDE`], at most [`MAX_PIXELS`] together.
+    pub size: [u32; 2],
+    /// Stops: the picture is multiplied by 2^exposure before it is encoded.
+    pub exposure: f32,
+}
+
+/// Longest side of a picture, in pixels.
+pub const MAX_SIDE: u32 = 65_536;
+/// Largest number of pixels of a picture.
+pub const MAX_PIXELS: u64 = 1 << 28;
+
+/// `[camera]`: a right-handed view from `eye` towards `target`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// Position of the eye, world space.
+    pub eye: DVec3,
+    /// The point in the middle of the picture; differs from `eye`.
+    pub target: DVec3,
+    /// Which way is up; not parallel to the view.
+    pub up: DVec3,
+    /// Perspective or parallel projection.
+    pub lens: Lens,
+}
+
+/// How rays leave the eye.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Lens {
+    /// A pinhole with this *vertical* field of view, in (0, 180) degrees (`fov_degrees`).
+    Perspective {
+        /// Vertical field of view.
+        fov_degrees: f64,
+    },
+    /// The eye at infinity; the picture is this high in world units (`height`).
+    Parallel {
+        /// Height of the picture in world units, > 0.
+        height: f64,
+    },
+}
+
+/// `[background]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Background {
+    /// One colour in every direction.
+    pub color: Rgb,
+}
+
+/// `[trace]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trace {
+    /// Camera rays per pixel, 1 … 4096; one ray goes through the pixel's centre.
+    pub samples: u32,
+    /// Longest chain of reflections and refractions, 0 … 64.
+    pub depth: u32,
+    /// A branch whose weight is below this is not followed, 0 … 1.
+    pub cutoff: f32,
+}
+
+/// `[lights.NAME]`. A light that is off is traced all the same.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Light {
+    /// Unique among the lights.
+    pub name: String,
+    /// Tint of the light.
+    pub color: Rgb,
+    /// Strength: a surface facing the light shows `diffuse · color · intensity`. No falloff.
+    pub intensity: Rgb,
+    /// Whether it shines.
+    pub on: bool,
+    /// Where it is.
+    pub place: LightPlace,
+}
+
+/// Where a light is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LightPlace {
+    /// At a point of the world (`point`).
+    Point(DVec3),
+    /// Infinitely far away, *shining along* this direction (`direction`); not zero.
+    Direction(DVec3),
+}
+
+/// `[materials.NAME]`: `kloc·I_local + reflect·I_reflected + transmit·filter·I_refracted`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Unique among the materials.
+    pub name: String,
+    /// Colour of the surface, possibly a pattern (`color` or `texture`).
+    pub paint: Paint,
+    /// Weight of all local light: ambient, diffuse, highlight, emission.
+    pub kloc: Rgb,
+    /// Share of `ambient_light` shown, times the colour.
+    pub ambient: Rgb,
+    /// Lambert's coefficient, times the colour.
+    pub diffuse: Rgb,
+    /// Phong's highlight, white unless `metallic`.
+    pub specular: Rgb,
+    /// Phong's exponent.
+    pub shininess: f32,
+    /// 0 = white highlight, 1 = highlight in the colour of the surface.
+    pub metallic: f32,
+    /// Light given off by itself.
+    pub emission: Rgb,
+    /// Share of the mirror ray.
+    pub reflect: Rgb,
+    /// Share of the refracted ray, and of light that passes straight through as coloured shadow.
+    pub transmit: Rgb,
+    /// Colour of what passes through, once per surface crossed.
+    pub filter: Rgb,
+    /// Index of refraction.
+    pub ior: f64,
+}
+
+/// Colour of a surface: one colour per *slot*; geometry decides which slot a point falls into.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Paint {
+    /// One colour everywhere: slot 0.
+    Solid(Rgb),
+    /// World-space cubes of side `size` in two colours: `a` is slot 0, `b` slot 1. The cube that
+    /// contains a point just above the origin on every axis is `a`.
+    Checker {
+        /// Colour of slot 0.
+        a: Rgb,
+        /// Colour of slot 1.
+        b: Rgb,
+        /// Side of a cube, world units, > 0.
+        size: f64,
+    },
+}
+
+/// `[solids.NAME]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solid {
+    /// Unique among the solids.
+    pub name: String,
+    /// The form, in object space.
+    pub shape: Shape,
+    /// Index into `Scene::materials`.
+    pub material: usize,
+    /// world_from_object.
+    pub placement: Placement,
+}
+
+/// Scale first, then rotation about x, y, z in this order, then translation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Placement {
+    /// World units.
+    pub translate: DVec3,
+    /// About the axes x, then y, then z, right-handed.
+    pub rotate_degrees: DVec3,
+    /// Per axis, > 0.
+    pub scale: DVec3,
+}
+
+impl Default for Placement {
+    fn default() -> Placement {
+        Placement { translate: DVec3::ZERO, rotate_degrees: DVec3::ZERO, scale: DVec3::ONE }
+    }
+}
+
+/// A form in object space.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// All points within `radius` of `center`.
+    Sphere {
+        /// Centre.
+        center: DVec3,
+        /// > 0.
+        radius: f64,
+    },
+    /// The half-space `normal · p ≤ offset` behind an infinite plane (`normal` of any length, not zero;
+    /// the plane is `normal · p = offset · |normal|`).
+    Plane {
+        /// Points out of the solid.
+        normal: DVec3,
+        /// Distance of the plane from the origin along the normal.
+        offset: f64,
+    },
+    /// An axis-parallel box; `min < max` on every axis.
+    Box {
+        /// Lowest corner.
+        min: DVec3,
+        /// Highest corner.
+        max: DVec3,
+    },
+    /// A flat polygon of three or more points: a surface without thickness, which does not refract.
+    Polygon {
+        /// Corners in order, possibly concave.
+        points: Vec<DVec3>,
+    },
+    /// Triangles from an OBJ file.
+    Mesh {
+        /// As written in the scene, relative to the scene's file.
+        file: String,
+        /// What the file held when the scene was read.
+        mesh: Arc<Mesh>,
+    },
+    /// A tube around a (p, q) torus knot, as a closed mesh made when the geometry is compiled.
+    Knot {
+        /// Turns around the axis and through the hole, both ≥ 1, coprime.
+        turns: [u32; 2],
+        /// Radius of the tube, object units; the knot's own radius is 1.
+        tube: f64,
+        /// Segments along and around the tube, ≥ 3.
+        segments: [u32; 2],
+    },
+    /// A sphere carrying nine spheres of a third of its radius, recursively: (9^levels − 1)/8 spheres.
+    Sphereflake {
+        /// Centre of the largest sphere.
+        center: DVec3,
+        /// Radius of the largest sphere, > 0.
+        radius: f64,
+        /// 1 … 6.
+        levels: u32,
+    },
+}

@@ -1,0 +1,1 @@
+//! Writes a scene as text that reads back as the same value.
