@@ -17,5 +17,13 @@ pub mod math;
 pub mod progress;
 // what the user wrote
 pub mod scene;
+// what the eye gets
+pub mod film;
 // ready for rays
 pub mod geometry;
+// ray trees
+pub mod forest;
+// trees to transport
+pub mod fold;
+// parameters and transport to light
+pub mod shade;

@@ -1,1 +1,242 @@
-//! The factors of every product of parameters: the only functions of parameters in a picture.
+//! The factors of every product of parameters, and the one rule by which a branch lives or dies.
+//!
+//! A picture is a sum of *geometry × product of factors*. A factor is a function of the parameters
+//! of one material, one texture slot or one light, and nothing else in a picture depends on them.
+
+use super::{Light, Material, Paint, Scene};
+use crate::color::Rgb;
+
+/// What a factor means. The order is the order in which terms are numbered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub enum Kind {
+    /// Colour of the background, seen where a ray leaves the scene.
+    Background,
+    /// `reflect` of a material, for the mirror ray.
+    Reflect,
+    /// `transmit · filter` of a material, for the refracted ray.
+    Transmit,
+    /// `min(1, reflect + transmit)` of a material, for the mirror ray of total internal reflection.
+    TotalReflect,
+    /// `kloc · (emission + ambient · colour · ambient_light)` of a material's slot.
+    Ambient,
+    /// `kloc · diffuse · colour` of a material's slot.
+    Diffuse,
+    /// `kloc · specular`, tinted by `metallic` with the colour of the slot.
+    Specular,
+    /// `color · intensity` of a light, 0 if it is off.
+    Light,
+    /// `transmit · filter` of a material that a shadow ray crosses, once per surface.
+    Shadow,
+}
+
+const KINDS: [Kind; 9] = [
+    Kind::Background,
+    Kind::Reflect,
+    Kind::Transmit,
+    Kind::TotalReflect,
+    Kind::Ambient,
+    Kind::Diffuse,
+    Kind::Specular,
+    Kind::Light,
+    Kind::Shadow,
+];
+
+/// Name of one factor: kind in bits 28…31, slot in bits 16…23, index of material or light in bits
+/// 0…15. `Factor::new(Kind::Diffuse, 2, 1)` is `0x5001_0002`. Ordered by (kind, slot, index), which
+/// depends on the scene file's order alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Factor(u32);
+
+impl Factor {
+    /// The factor of this kind of the material or light with this index.
+    #[inline(always)]
+    pub const fn new(kind: Kind, index: u16, slot: u8) -> Factor {
+        Factor((kind as u32) << 28 | (slot as u32) << 16 | index as u32)
+    }
+
+    /// What it means.
+    #[inline(always)]
+    pub fn kind(self) -> Kind {
+        KINDS[(self.0 >> 28) as usize]
+    }
+
+    /// Index of the material, or of the light for [`Kind::Light`].
+    #[inline(always)]
+    pub fn index(self) -> usize {
+        (self.0 & 0xffff) as usize
+    }
+
+    /// Slot of the material's paint.
+    #[inline(always)]
+    pub fn slot(self) -> usize {
+        (self.0 >> 16 & 0xff) as usize
+    }
+
+    /// The bits, for hashing.
+    #[inline(always)]
+    pub fn bits(self) -> u32 {
+        self.0
+    }
+
+    /// Whether it leads to a further node of the ray tree.
+    #[inline(always)]
+    pub fn is_path(self) -> bool {
+        matches!(self.kind(), Kind::Reflect | Kind::Transmit | Kind::TotalReflect)
+    }
+
+    /// Text such as `diffuse(tiles.b)`, for people.
+    pub fn describe(self, scene: &Scene) -> String {
+        let material = || scene.materials[self.index()].name.as_str();
+        let slot = || match (&scene.materials[self.index()].paint, self.slot()) {
+            (Paint::Solid(_), _) => String::new(),
+            (Paint::Checker { .. }, 0) => ".a".into(),
+            (Paint::Checker { .. }, _) => ".b".into(),
+        };
+        match self.kind() {
+            Kind::Background => "background".into(),
+            Kind::Reflect => format!("reflect({})", material()),
+            Kind::Transmit => format!("transmit({})", material()),
+            Kind::TotalReflect => format!("tir({})", material()),
+            Kind::Ambient => format!("ambient({}{})", material(), slot()),
+            Kind::Diffuse => format!("diffuse({}{})", material(), slot()),
+            Kind::Specular => format!("specular({}{})", material(), slot()),
+            Kind::Light => format!("light({})", scene.lights[self.index()].name),
+            Kind::Shadow => format!("shadow({})", material()),
+        }
+    }
+}
+
+/// Slots that a paint may have.
+const SLOTS: usize = 2;
+
+/// The value of every factor of a scene. Made from a scene's parameters, read by tracing (which
+/// branches live) and by shading (what they show).
+#[derive(Clone, Debug, PartialEq)]
+pub struct FactorValues {
+    background: Rgb,
+    reflect: Vec<Rgb>,
+    transmit: Vec<Rgb>,
+    total_reflect: Vec<Rgb>,
+    ambient: Vec<[Rgb; SLOTS]>,
+    diffuse: Vec<[Rgb; SLOTS]>,
+    specular: Vec<[Rgb; SLOTS]>,
+    light: Vec<Rgb>,
+    limits: Limits,
+}
+
+impl FactorValues {
+    /// Evaluates every factor.
+    pub fn new(scene: &Scene) -> FactorValues {
+        let materials = || scene.materials.iter();
+        FactorValues {
+            background: scene.background.color,
+            reflect: materials().map(|m| m.reflect).collect(),
+            transmit: materials().map(|m| m.transmit * m.filter).collect(),
+            total_reflect: materials()
+                .map(|m| (m.reflect + m.transmit).map(|c| c.min(1.0)))
+                .collect(),
+            ambient: materials()
+                .map(|m| {
+                    let glow = |o| m.kloc * (m.emission + m.ambient * o * scene.ambient_light);
+                    slot_colors(m).map(glow)
+                })
+                .collect(),
+            diffuse: materials().map(|m| slot_colors(m).map(|o| m.kloc * m.diffuse * o)).collect(),
+            specular: materials()
+                .map(|m| slot_colors(m).map(|o| m.kloc * m.specular * tint(o, m.metallic)))
+                .collect(),
+            light: scene.lights.iter().map(light_value).collect(),
+            limits: Limits { depth: scene.trace.depth, cutoff: scene.trace.cutoff },
+        }
+    }
+
+    /// The value of one factor, every channel ≥ 0.
+    #[inline(always)]
+    pub fn value(&self, factor: Factor) -> Rgb {
+        let (i, slot) = (factor.index(), factor.slot());
+        match factor.kind() {
+            Kind::Background => self.background,
+            Kind::Reflect => self.reflect[i],
+            Kind::Transmit | Kind::Shadow => self.transmit[i],
+            Kind::TotalReflect => self.total_reflect[i],
+            Kind::Ambient => self.ambient[i][slot],
+            Kind::Diffuse => self.diffuse[i][slot],
+            Kind::Specular => self.specular[i][slot],
+            Kind::Light => self.light[i],
+        }
+    }
+
+    /// Whether, per material, nothing passes through: `transmit · filter` is zero.
+    pub fn opaque(&self) -> Vec<bool> {
+        self.transmit.iter().map(|t| t.is_black()).collect()
+    }
+
+    /// Follows a branch that carries the path factor `factor` from a node reached with weight
+    /// `path`: the weight of the child, or why the branch ends here.
+    ///
+    /// **The one rule of liveness**: tracing stops by it and shading gives a dead column 0 by it.
+    /// Only `reflect`, `transmit·filter` and `tir` of the seen path count, each clamped to 1.
+    #[inline(always)]
+    pub fn follow(&self, path: PathWeight, factor: Factor) -> Result<PathWeight, End> {
+        let value = self.value(factor);
+        if value.is_black() {
+            return Err(End::Zero);
+        }
+        if path.depth >= self.limits.depth {
+            return Err(End::Depth);
+        }
+        let weight = path.weight * value.map(|c| c.min(1.0));
+        if weight.max_channel() < self.limits.cutoff {
+            return Err(End::Weight);
+        }
+        Ok(PathWeight { weight, depth: path.depth + 1 })
+    }
+}
+
+/// Where branches stop: `[trace]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Limits {
+    depth: u32,
+    cutoff: f32,
+}
+
+/// Parameter weight and depth of a node of a ray tree: functions of its path factors alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathWeight {
+    /// Product of the path's factors, each clamped to 1.
+    pub weight: Rgb,
+    /// Number of path factors.
+    pub depth: u32,
+}
+
+impl PathWeight {
+    /// The eye: weight 1, depth 0.
+    pub const EYE: PathWeight = PathWeight { weight: Rgb::WHITE, depth: 0 };
+}
+
+/// Why a branch was not followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// Its factor is zero.
+    Zero,
+    /// Its weight is below the cut-off.
+    Weight,
+    /// It would be deeper than the limit.
+    Depth,
+}
+
+fn slot_colors(material: &Material) -> [Rgb; SLOTS] {
+    match material.paint {
+        Paint::Solid(color) => [color; SLOTS],
+        Paint::Checker { a, b, size: _ } => [a, b],
+    }
+}
+
+fn tint(color: Rgb, metallic: f32) -> Rgb {
+    color.map(|c| (1.0 - metallic) + metallic * c)
+}
+
+fn light_value(light: &Light) -> Rgb {
+    if light.on { light.color * light.intensity } else { Rgb::BLACK }
+}

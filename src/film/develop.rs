@@ -1,0 +1,112 @@
+//! From linear light to what is shown: exposure, then the sRGB curve.
+
+use super::layout::{BLOCK, LANES, TILE};
+use super::{Film, FilmBlock, Frame};
+use crate::color::{Rgb, srgb_code};
+use crate::math::exposure_factor;
+
+/// A row of tiles of a [`Frame`]: the pixel rows that its tiles cover, and no more.
+pub struct FrameRows<'a> {
+    /// Width of the picture in pixels.
+    pub width: usize,
+    /// Whole pixel rows, at most [`TILE`] of them.
+    pub bytes: &'a mut [u8],
+}
+
+/// Cuts a frame into its rows of tiles.
+pub fn tile_rows(frame: &mut Frame) -> impl Iterator<Item = FrameRows<'_>> {
+    let width = frame.size[0] as usize;
+    frame.bytes.chunks_mut(width * 4 * TILE as usize).map(move |bytes| FrameRows { width, bytes })
+}
+
+impl FrameRows<'_> {
+    /// Writes one block of the `column`-th tile of the row, its light multiplied by `gain`.
+    #[inline(always)]
+    pub fn put(&mut self, column: usize, block: usize, light: &FilmBlock, gain: f32) {
+        let codes = encode(light, gain);
+        let x = column * TILE as usize + block % 8 * BLOCK as usize;
+        let y = block / 8 * BLOCK as usize;
+        let wide = BLOCK as usize * 4;
+        for row in 0..BLOCK as usize {
+            let source = &codes[row * BLOCK as usize..][..BLOCK as usize];
+            let at = ((y + row) * self.width + x) * 4;
+            if x + BLOCK as usize <= self.width {
+                let Some(out) = self.bytes.get_mut(at..at + wide) else { return };
+                for (pixel, code) in out.chunks_exact_mut(4).zip(source) {
+                    pixel.copy_from_slice(&code.to_le_bytes());
+                }
+            } else if x < self.width {
+                let Some(out) = self.bytes.get_mut(at..at + (self.width - x) * 4) else { return };
+                for (pixel, code) in out.chunks_exact_mut(4).zip(source) {
+                    pixel.copy_from_slice(&code.to_le_bytes());
+                }
+            }
+        }
+    }
+}
+
+/// Sixteen pixels as little-endian red, green, blue, 255.
+#[inline(always)]
+fn encode(light: &FilmBlock, gain: f32) -> [u32; LANES] {
+    const ROUND: f32 = 8_388_608.0; // 2^23: adding it leaves a whole number in the low bits
+    let mut codes = [0xff00_0000; LANES];
+    for (channel, row) in light.0.iter().enumerate() {
+        for (code, value) in codes.iter_mut().zip(row) {
+            let byte = (srgb_code(*value * gain) + ROUND).to_bits() & 255;
+            *code |= byte << (8 * channel);
+        }
+    }
+    codes
+}
+
+/// Develops a whole film: `exposure` in stops.
+pub fn frame(film: &Film, exposure: f32) -> Frame {
+    let mut frame = Frame::new(film.layout.size);
+    let gain = exposure_factor(exposure);
+    let columns = film.layout.grid()[0];
+    for (row, mut rows) in tile_rows(&mut frame).enumerate() {
+        for column in 0..columns {
+            for block in 0..super::layout::TILE_BLOCKS {
+                let at = (row * columns + column) * super::layout::TILE_BLOCKS + block;
+                rows.put(column, block, &film.blocks[at], gain);
+            }
+        }
+    }
+    frame
+}
+
+/// One pixel as 16-bit sRGB code values, for 16-bit files.
+pub fn code16(light: Rgb, gain: f32) -> [u16; 3] {
+    light.0.map(|c| (f64::from(srgb_code(c * gain)) * 257.0).round() as u16)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::layout::Layout;
+    use super::*;
+    use crate::color::srgb_byte;
+
+    #[test]
+    fn every_pixel_lands_in_its_place_at_ragged_sizes() {
+        for size in [[1, 1], [5, 3], [33, 31], [70, 45]] {
+            let mut film = Film::new(Layout::new(size));
+            let value = |x: u32, y: u32, c: u32| ((x * 7 + y * 13 + c * 29) % 101) as f32 / 100.0;
+            for y in 0..size[1] {
+                for x in 0..size[0] {
+                    let p = film.layout.place([x, y]);
+                    let block = &mut film.blocks[p.tile * 64 + p.block];
+                    for c in 0..3 {
+                        block.0[c as usize][p.lane] = value(x, y, c);
+                    }
+                }
+            }
+            let frame = frame(&film, 1.0);
+            for y in 0..size[1] {
+                for x in 0..size[0] {
+                    let [r, g, b] = [0, 1, 2].map(|c| srgb_byte(2.0 * value(x, y, c)));
+                    assert_eq!(frame.pixel([x, y]), [r, g, b, 255], "pixel {x} {y} of {size:?}");
+                }
+            }
+        }
+    }
+}

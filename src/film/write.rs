@@ -1,0 +1,210 @@
+//! Picture files: PNG with 8 or 16 bits as shown, OpenEXR with linear floats; written whole or not at all.
+
+use std::fmt;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use super::develop::{self, code16};
+use super::{Film, Frame};
+use crate::math::exposure_factor;
+
+/// A picture format and its depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// PNG, 8 bits, sRGB.
+    Png8,
+    /// PNG, 16 bits, sRGB.
+    Png16,
+    /// OpenEXR, 32-bit linear floats, before exposure.
+    Exr,
+}
+
+impl Format {
+    /// The format that a file's name asks for; `deep` chooses 16 bits for PNG.
+    pub fn of(path: &Path, deep: bool) -> Result<Format, WriteError> {
+        let ending = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+        match ending.as_deref() {
+            Some("png") if deep => Ok(Format::Png16),
+            Some("png") => Ok(Format::Png8),
+            Some("exr") => Ok(Format::Exr),
+            _ => Err(WriteError {
+                path: path.into(),
+                cause: "the name must end in .png or .exr".into(),
+            }),
+        }
+    }
+}
+
+/// A picture that could not be written; what was at the path before is untouched.
+#[derive(Debug)]
+pub struct WriteError {
+    path: PathBuf,
+    cause: String,
+}
+
+impl fmt::Display for WriteError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "cannot write {}: {}", self.path.display(), self.cause)
+    }
+}
+
+impl std::error::Error for WriteError {}
+
+/// Writes a picture. `scene` is the text of the scene it shows and is kept inside the file, so that
+/// equal scenes give equal bytes: no time and no history is stored.
+pub fn picture(
+    path: &Path,
+    format: Format,
+    film: &Film,
+    exposure: f32,
+    scene: &str,
+) -> Result<(), WriteError> {
+    atomically(path, |out| match format {
+        Format::Png8 => png8(out, &develop::frame(film, exposure), scene),
+        Format::Png16 => png16(out, film, exposure, scene),
+        Format::Exr => exr_floats(out, film, scene),
+    })
+}
+
+/// Writes a file beside its place and renames it: a reader sees the old file or the new one, and a
+/// process killed while writing leaves the old one.
+pub fn atomically(
+    path: &Path,
+    write: impl FnOnce(&mut dyn WriteSeek) -> Result<(), String>,
+) -> Result<(), WriteError> {
+    let fail = |cause: String| WriteError { path: path.into(), cause };
+    let folder = match path.parent() {
+        Some(p) if !p.as_os_str().is_empty() => p,
+        _ => Path::new("."),
+    };
+    if path.is_dir() {
+        return Err(fail("it is a folder".into()));
+    }
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".rayforest-").suffix(".part");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let file = builder.tempfile_in(folder).map_err(|e| fail(e.to_string()))?;
+    let mut out = BufWriter::new(file);
+    write(&mut out).map_err(&fail)?;
+    let file = out.into_inner().map_err(|e| fail(e.to_string()))?;
+    file.persist(path).map_err(|e| fail(e.error.to_string()))?;
+    Ok(())
+}
+
+/// Where picture bytes go.
+pub trait WriteSeek: Write + std::io::Seek {}
+impl<T: Write + std::io::Seek> WriteSeek for T {}
+
+const SCENE_KEY: &str = "rayforest scene";
+
+fn png8(out: &mut dyn WriteSeek, frame: &Frame, scene: &str) -> Result<(), String> {
+    let rgb: Vec<u8> = frame.bytes.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+    png_file(out, frame.size, png::BitDepth::Eight, &rgb, scene)
+}
+
+fn png16(out: &mut dyn WriteSeek, film: &Film, exposure: f32, scene: &str) -> Result<(), String> {
+    let [width, height] = film.layout.size;
+    let gain = exposure_factor(exposure);
+    let mut data = Vec::with_capacity(width as usize * height as usize * 6);
+    for y in 0..height {
+        for x in 0..width {
+            data.extend(code16(film.pixel([x, y]), gain).into_iter().flat_map(u16::to_be_bytes));
+        }
+    }
+    png_file(out, [width, height], png::BitDepth::Sixteen, &data, scene)
+}
+
+fn png_file(
+    out: &mut dyn WriteSeek,
+    size: [u32; 2],
+    depth: png::BitDepth,
+    data: &[u8],
+    scene: &str,
+) -> Result<(), String> {
+    let text = |e: png::EncodingError| e.to_string();
+    let mut encoder = png::Encoder::new(out, size[0], size[1]);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(depth);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
+    encoder.add_itxt_chunk(SCENE_KEY.into(), scene.into()).map_err(text)?;
+    let mut writer = encoder.write_header().map_err(text)?;
+    writer.write_image_data(data).map_err(text)?;
+    writer.finish().map_err(text)
+}
+
+fn exr_floats(out: &mut dyn WriteSeek, film: &Film, scene: &str) -> Result<(), String> {
+    use exr::prelude::{Image, SpecificChannels, Text, Vec2, WritableImage};
+    let [width, height] = film.layout.size;
+    let channels = SpecificChannels::rgb(|at: Vec2<usize>| {
+        let [r, g, b] = film.pixel([at.x() as u32, at.y() as u32]).0;
+        (r, g, b)
+    });
+    let mut image = Image::from_channels((width as usize, height as usize), channels);
+    // The attribute is bytes; readers show them as UTF-8.
+    image.layer_data.attributes.comments = Some(Text::from_slice_unchecked(scene.as_bytes()));
+    image.write().non_parallel().to_buffered(out).map_err(|e| e.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::layout::Layout;
+    use super::*;
+
+    fn film() -> Film {
+        let mut film = Film::new(Layout::new([9, 5]));
+        for (i, block) in film.blocks.iter_mut().enumerate() {
+            for (lane, value) in block.0[0].iter_mut().enumerate() {
+                *value = (i * 16 + lane) as f32 / 400.0;
+            }
+            block.0[2] = [0.25; 16];
+        }
+        film
+    }
+
+    #[test]
+    fn equal_pictures_give_equal_files_and_the_scene_is_inside() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, deep) in [("a.png", false), ("b.png", true), ("c.exr", false)] {
+            let path = folder.path().join(name);
+            let write = || {
+                let format = Format::of(&path, deep).unwrap();
+                picture(&path, format, &film(), 0.5, "version = 1 # µ").unwrap();
+                std::fs::read(&path).unwrap()
+            };
+            let first = write();
+            assert_eq!(first, write(), "{name}");
+            let text = "version = 1 # µ".as_bytes();
+            assert!(first.windows(text.len()).any(|w| w == text), "{name} lacks the scene");
+        }
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3, "left-over files");
+    }
+
+    #[test]
+    fn png_holds_the_developed_pixels() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        picture(&path, Format::Png8, &film(), 0.0, "").unwrap();
+        let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
+        let mut reader = png::Decoder::new(file).read_info().unwrap();
+        let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut bytes).unwrap();
+        let frame = develop::frame(&film(), 0.0);
+        let rgb: Vec<u8> = frame.bytes.chunks(4).flat_map(|p| p[..3].to_vec()).collect();
+        assert_eq!(bytes, rgb);
+    }
+
+    #[test]
+    fn a_failed_write_leaves_the_old_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("old.png");
+        std::fs::write(&path, "old").unwrap();
+        let error = atomically(&path, |_| Err("disc full".into())).unwrap_err();
+        assert!(error.to_string().ends_with("old.png: disc full"), "{error}");
+        assert_eq!(std::fs::read(&path).unwrap(), b"old");
+        let missing = folder.path().join("no/such/folder.png");
+        assert!(picture(&missing, Format::Png8, &film(), 0.0, "").is_err());
+        assert!(Format::of(Path::new("a.jpg"), false).is_err());
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "left-over files");
+    }
+}

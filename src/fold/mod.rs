@@ -1,0 +1,294 @@
+//! Folds ray trees into the transport matrix: collects, per pixel, all that has the same product
+//! of parameters.
+
+pub mod highlight;
+pub mod transport;
+pub mod trie;
+
+use highlight::HighlightPower;
+use transport::{HighlightList, Highlights, Plane, TransportTile};
+use trie::{Marks, ROOT, Trie};
+
+use crate::film::layout::LANES;
+use crate::forest::tree::{BLOCKED, Branch, LightHit, Node, Reader};
+use crate::math::log2_of_cosine;
+use crate::scene::factor::{Factor, Kind};
+
+/// Folds the blocks of one tile after another; one per thread, its memory reused.
+///
+/// The product of a term stands in this order: the path's factors from the eye on, then, for light
+/// from a lamp, the light, the materials its shadow ray crossed (rising), and what the surface does
+/// with it (diffuse or highlight).
+#[derive(Default)]
+pub struct Folder {
+    trie: Trie,
+    memo: Vec<Lookup>,
+    position: usize,
+    stack: Vec<u32>,
+    /// Per trie id the stamp of the block that last used it and its slot there.
+    slots: Vec<(u32, u32)>,
+    stamp: u32,
+    /// Trie id and coefficients of every slot, block after block.
+    ids: Vec<u32>,
+    planes: Vec<Plane>,
+    starts: Vec<u32>,
+    highlights: Vec<HighlightSample>,
+    highlight_starts: Vec<u32>,
+    power: HighlightPower,
+}
+
+/// An answer of the trie: most trees look up what the tree before them did, in the same order.
+#[derive(Clone, Copy)]
+struct Lookup {
+    parent: u32,
+    factor: Factor,
+    id: u32,
+}
+
+/// One sample's highlight, before it is sorted into its list.
+#[derive(Clone, Copy)]
+struct HighlightSample {
+    slot: u32,
+    material: u16,
+    lane: u16,
+    log2_cosine: f32,
+}
+
+/// A tile just folded: its part of the matrix in ids of its own trie, and that trie.
+pub struct Folded<'a> {
+    /// The tile's terms; `tile.terms` holds ids of this trie.
+    pub trie: &'a Trie,
+    /// Its rows.
+    pub tile: TransportTile,
+}
+
+impl Folder {
+    /// Begins a tile.
+    pub fn begin_tile(&mut self) {
+        self.trie.clear();
+        self.memo.clear();
+        self.slots.clear();
+        self.stamp = 0;
+        self.ids.clear();
+        self.planes.clear();
+        self.starts.clear();
+        self.starts.push(0);
+        self.highlights.clear();
+        self.highlight_starts.clear();
+        self.highlight_starts.push(0);
+    }
+
+    /// Folds the trees of a block: `samples` of each lane that `covered` says to hold a pixel.
+    pub fn block(&mut self, reader: &mut Reader, covered: [bool; LANES], samples: u32) {
+        self.stamp += 1;
+        for (lane, _) in covered.iter().enumerate().filter(|(_, c)| **c) {
+            for _ in 0..samples {
+                self.position = 0;
+                if reader.sample() {
+                    self.tree(reader, lane);
+                } else {
+                    self.background(ROOT, lane);
+                }
+            }
+        }
+        self.starts.push(self.ids.len() as u32);
+        self.highlight_starts.push(self.highlights.len() as u32);
+    }
+
+    /// Adds the terms of one tree to a lane.
+    #[inline(always)]
+    fn tree(&mut self, reader: &mut Reader, lane: usize) {
+        self.stack.push(ROOT);
+        while let Some(path) = self.stack.pop() {
+            let node = reader.node();
+            let glow = self.find(path, Factor::new(Kind::Ambient, node.material, node.slot));
+            self.add(glow, lane, 1.0);
+            for _ in 0..node.lights {
+                let (hit, crossed) = reader.light();
+                self.light(path, node, hit, crossed, lane);
+            }
+            let mirror = if node.ends.total() { Kind::TotalReflect } else { Kind::Reflect };
+            let transmit = Factor::new(Kind::Transmit, node.material, 0);
+            self.branch(path, node.ends.transmitted(), transmit, lane);
+            let reflect = Factor::new(mirror, node.material, 0);
+            self.branch(path, node.ends.reflected(), reflect, lane);
+        }
+    }
+
+    #[inline(always)]
+    fn light(&mut self, path: u32, node: &Node, hit: &LightHit, crossed: &[u16], lane: usize) {
+        if hit.crossed == BLOCKED {
+            let witness = self.find(path, Factor::new(Kind::Shadow, crossed[0], 0));
+            self.trie.mark(witness, Marks::WITNESS);
+            return;
+        }
+        if hit.n_dot_l <= 0.0 {
+            return;
+        }
+        let mut arriving = self.find(path, Factor::new(Kind::Light, hit.light, 0));
+        for &material in crossed {
+            arriving = self.find(arriving, Factor::new(Kind::Shadow, material, 0));
+        }
+        let diffuse = self.find(arriving, Factor::new(Kind::Diffuse, node.material, node.slot));
+        self.add(diffuse, lane, hit.n_dot_l);
+        if hit.one_minus_r_dot_v < 1.0 {
+            let factor = Factor::new(Kind::Specular, node.material, node.slot);
+            let specular = self.find(arriving, factor);
+            let slot = self.slot(specular);
+            self.highlights.push(HighlightSample {
+                slot,
+                material: node.material,
+                lane: lane as u16,
+                log2_cosine: log2_of_cosine(hit.one_minus_r_dot_v),
+            });
+        }
+    }
+
+    #[inline(always)]
+    fn branch(&mut self, path: u32, branch: Branch, factor: Factor, lane: usize) {
+        if branch == Branch::Absent {
+            return;
+        }
+        let child = self.find(path, factor);
+        match branch {
+            Branch::Grown => self.stack.push(child),
+            Branch::Missed => self.background(child, lane),
+            _ => self.trie.mark(child, Marks::FRONTIER),
+        }
+    }
+
+    #[inline(always)]
+    fn background(&mut self, path: u32, lane: usize) {
+        let term = self.find(path, Factor::new(Kind::Background, 0, 0));
+        self.add(term, lane, 1.0);
+    }
+
+    /// The id of `parent · factor`, first guessed from the tree before.
+    #[inline(always)]
+    fn find(&mut self, parent: u32, factor: Factor) -> u32 {
+        let at = self.position;
+        self.position += 1;
+        match self.memo.get(at) {
+            Some(known) if known.parent == parent && known.factor == factor => known.id,
+            _ => self.look_up(parent, factor, at),
+        }
+    }
+
+    fn look_up(&mut self, parent: u32, factor: Factor, at: usize) -> u32 {
+        let id = self.trie.intern(parent, factor);
+        let lookup = Lookup { parent, factor, id };
+        match self.memo.get_mut(at) {
+            Some(known) => *known = lookup,
+            None => self.memo.push(lookup),
+        }
+        id
+    }
+
+    /// The slot of a term in the present block.
+    #[inline(always)]
+    fn slot(&mut self, id: u32) -> u32 {
+        match self.slots.get(id as usize) {
+            Some(&(stamp, slot)) if stamp == self.stamp => slot,
+            _ => self.new_slot(id),
+        }
+    }
+
+    fn new_slot(&mut self, id: u32) -> u32 {
+        if self.slots.len() <= id as usize {
+            self.slots.resize(self.trie.nodes().len(), (0, 0));
+        }
+        let slot = self.ids.len() as u32;
+        self.slots[id as usize] = (self.stamp, slot);
+        self.ids.push(id);
+        self.planes.push(Plane::default());
+        self.trie.mark(id, Marks::TERM);
+        slot
+    }
+
+    #[inline(always)]
+    fn add(&mut self, id: u32, lane: usize, value: f32) {
+        let slot = self.slot(id);
+        self.planes[slot as usize].0[lane & (LANES - 1)] += value;
+    }
+
+    /// Ends a tile: puts its terms in canonical order, computes its highlights, and fills `reuse`.
+    ///
+    /// `weight` is that of one sample; `shininess` has one exponent per material.
+    pub fn finish_tile(
+        &mut self,
+        mut reuse: TransportTile,
+        weight: f32,
+        shininess: &[f32],
+    ) -> Folded<'_> {
+        let ranks = self.trie.canonical_ranks();
+        let local = self.dictionary(&ranks, &mut reuse);
+        reuse.starts.clear();
+        reuse.starts.extend_from_slice(&self.starts);
+        reuse.entries.clear();
+        reuse.entries.reserve_exact(self.ids.len());
+        reuse.planes.clear();
+        reuse.planes.reserve_exact(self.ids.len());
+        let mut highlights = reuse.highlights.take().unwrap_or_default();
+        highlights.lists.clear();
+        highlights.log2_cosines.clear();
+        highlights.log2_cosines.reserve_exact(self.highlights.len());
+        let mut order = Vec::new();
+        let mut place = vec![0u32; self.ids.len()];
+        for block in 0..self.starts.len() - 1 {
+            let slots = self.starts[block]..self.starts[block + 1];
+            order.clear();
+            order.extend(slots.map(|slot| (local[self.ids[slot as usize] as usize], slot)));
+            order.sort_unstable();
+            for &(entry, slot) in &order {
+                place[slot as usize] = reuse.planes.len() as u32;
+                reuse.entries.push(entry);
+                let Plane(sum) = self.planes[slot as usize];
+                reuse.planes.push(Plane(sum.map(|c| c * weight)));
+            }
+            self.sort_highlights(block, &place, &mut highlights);
+        }
+        let mut from = 0;
+        for list in &highlights.lists {
+            let to = from + list.samples();
+            let samples = &highlights.log2_cosines[from..to];
+            let exponent = shininess[list.material as usize];
+            reuse.planes[list.plane as usize] = self.power.plane(list, samples, exponent, weight);
+            from = to;
+        }
+        reuse.highlights = Some(highlights);
+        Folded { trie: &self.trie, tile: reuse }
+    }
+
+    /// Fills `tile.terms` with the ids that have coefficients, in canonical order, and gives for
+    /// every id its index there.
+    fn dictionary(&self, ranks: &[u32], tile: &mut TransportTile) -> Vec<u32> {
+        let marked = self.trie.nodes().iter().zip(0u32..).filter(|(n, _)| n.marks.has(Marks::TERM));
+        tile.terms.clear();
+        tile.terms.extend(marked.map(|(_, id)| id));
+        tile.terms.sort_unstable_by_key(|&id| ranks[id as usize]);
+        tile.terms.shrink_to_fit();
+        let mut local = vec![0; self.trie.nodes().len()];
+        for (id, index) in tile.terms.iter().zip(0u32..) {
+            local[*id as usize] = index;
+        }
+        local
+    }
+
+    /// Sorts a block's highlight samples into lists, by plane, then lane, then sample.
+    fn sort_highlights(&mut self, block: usize, place: &[u32], highlights: &mut Highlights) {
+        let range = self.highlight_starts[block]..self.highlight_starts[block + 1];
+        let samples = &mut self.highlights[range.start as usize..range.end as usize];
+        // Samples were found lane after lane: a stable sort by plane keeps lanes and samples.
+        samples.sort_by_key(|s| place[s.slot as usize]);
+        for s in samples.iter() {
+            let plane = place[s.slot as usize];
+            if highlights.lists.last().is_none_or(|l| l.plane != plane) {
+                let counts = [0; LANES];
+                highlights.lists.push(HighlightList { plane, material: s.material, counts });
+            }
+            let last = highlights.lists.len() - 1;
+            highlights.lists[last].counts[s.lane as usize] += 1;
+            highlights.log2_cosines.push(s.log2_cosine);
+        }
+    }
+}

@@ -1,0 +1,344 @@
+//! Ray trees as flat arrays: nodes in preorder, the light that reached them, what shadows crossed.
+
+use super::grow::{Side, Sink};
+
+/// What became of a branch of a node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Branch {
+    /// Its node follows in preorder.
+    Grown,
+    /// The ray left the scene: it shows the background.
+    Missed,
+    /// Frontier: its factor is zero.
+    Zero,
+    /// Frontier: its parameter weight is below the cut-off.
+    Weight,
+    /// Frontier: the depth limit.
+    Depth,
+    /// There is no such ray: nothing is refracted in total reflection.
+    Absent,
+}
+
+const BRANCHES: [Branch; 6] = [
+    Branch::Grown,
+    Branch::Missed,
+    Branch::Zero,
+    Branch::Weight,
+    Branch::Depth,
+    Branch::Absent,
+];
+
+/// Both branches of a node in a byte: the reflected one in bits 0…2, the transmitted one in bits
+/// 3…5, bit 6 set in total reflection. `0b0_010_000`: reflected grown, transmitted `Zero`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ends(u8);
+
+impl Ends {
+    /// Packs both branches.
+    pub fn new(reflected: Branch, transmitted: Branch, total: bool) -> Ends {
+        Ends(reflected as u8 | (transmitted as u8) << 3 | u8::from(total) << 6)
+    }
+
+    /// The mirror ray's branch.
+    #[inline(always)]
+    pub fn reflected(self) -> Branch {
+        BRANCHES[(self.0 & 7) as usize]
+    }
+
+    /// The refracted ray's branch.
+    #[inline(always)]
+    pub fn transmitted(self) -> Branch {
+        BRANCHES[(self.0 >> 3 & 7) as usize]
+    }
+
+    /// Whether the mirror ray carries the factor of total reflection.
+    #[inline(always)]
+    pub fn total(self) -> bool {
+        self.0 & 64 != 0
+    }
+}
+
+/// A point where a ray of the seen path met a surface: 24 bytes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Node {
+    /// Distance along the ray, world units.
+    pub t: f64,
+    /// The primitive of the geometry that was met.
+    pub primitive: u32,
+    /// Its material.
+    pub material: u16,
+    /// Number of [`LightHit`]s that belong to this node.
+    pub lights: u16,
+    /// Slot of the material's paint at the point.
+    pub slot: u8,
+    /// What became of its branches.
+    pub ends: Ends,
+}
+
+/// A light in front of a node's geometric surface, and what its shadow ray met: 12 bytes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightHit {
+    /// Index of the light.
+    pub light: u16,
+    /// How many entries of `crossings` belong to it, or [`BLOCKED`]: one, the witness.
+    pub crossed: u16,
+    /// N·L with the shading normal: may be ≤ 0 where normals are smoothed.
+    pub n_dot_l: f32,
+    /// 1 − R·V: ≥ 1 where there is no highlight.
+    pub one_minus_r_dot_v: f32,
+}
+
+/// [`LightHit::crossed`] of a shadow ray that an opaque solid stopped.
+pub const BLOCKED: u16 = u16::MAX;
+
+/// The trees of one tile, in the order of its pixels and their samples.
+///
+/// # Invariants ([`TileTrees::validate`])
+/// Nodes of a sample stand in preorder, the reflected branch before the transmitted one; a node's
+/// lights stand in the order of the nodes and of the scene's lights; crossings in the order of the
+/// lights, each list sorted by material. Written by `grow`, read by `fold` and the inspector.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TileTrees {
+    /// Where each of the tile's 64 blocks begins.
+    pub blocks: Vec<Start>,
+    /// Per sample, whether its ray met the scene.
+    pub hits: Vec<bool>,
+    /// Nodes of all samples.
+    pub nodes: Vec<Node>,
+    /// Light records of all nodes.
+    pub lights: Vec<LightHit>,
+    /// Materials that shadow rays crossed, or witnesses that stopped them.
+    pub crossings: Vec<u16>,
+}
+
+/// A position in all arrays of a [`TileTrees`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Start {
+    /// Index into `hits`.
+    pub sample: u32,
+    /// Index into `nodes`.
+    pub node: u32,
+    /// Index into `lights`.
+    pub light: u32,
+    /// Index into `crossings`.
+    pub crossing: u32,
+}
+
+impl TileTrees {
+    /// Empties it and keeps its memory.
+    pub fn clear(&mut self) {
+        let TileTrees { blocks, hits, nodes, lights, crossings } = self;
+        blocks.clear();
+        hits.clear();
+        nodes.clear();
+        lights.clear();
+        crossings.clear();
+    }
+
+    /// Allocated bytes of all arrays.
+    pub fn bytes(&self) -> usize {
+        let TileTrees { blocks, hits, nodes, lights, crossings } = self;
+        blocks.capacity() * size_of::<Start>()
+            + hits.capacity()
+            + nodes.capacity() * size_of::<Node>()
+            + lights.capacity() * size_of::<LightHit>()
+            + crossings.capacity() * 2
+    }
+
+    /// Copies `from` into this one's memory, growing it to the exact need.
+    pub fn assign(&mut self, from: &TileTrees) {
+        let TileTrees { blocks, hits, nodes, lights, crossings } = from;
+        assign(&mut self.blocks, blocks);
+        assign(&mut self.hits, hits);
+        assign(&mut self.nodes, nodes);
+        assign(&mut self.lights, lights);
+        assign(&mut self.crossings, crossings);
+    }
+
+    /// A reader that begins at a block.
+    pub fn read(&self, block: usize) -> Reader<'_> {
+        Reader { trees: self, at: self.blocks[block] }
+    }
+
+    /// Checks every invariant.
+    ///
+    /// # Panics
+    /// With what is wrong.
+    pub fn validate(&self, materials: usize, lights: usize) {
+        let mut reader = Reader { trees: self, at: Start::default() };
+        for (i, &hit) in self.hits.iter().enumerate() {
+            if let Some(block) = self.blocks.iter().find(|b| b.sample as usize == i) {
+                assert_eq!(*block, reader.at, "a block starts elsewhere than its samples");
+            }
+            reader.at.sample += 1;
+            let mut open = usize::from(hit);
+            while open > 0 {
+                let node = reader.node();
+                assert!(node.t > 0.0 && node.t.is_finite(), "distance {}", node.t);
+                assert!((node.material as usize) < materials, "material {}", node.material);
+                let ends = node.ends;
+                assert_eq!(ends.total(), ends.transmitted() == Branch::Absent, "total reflection");
+                assert_ne!(ends.reflected(), Branch::Absent, "every node has a mirror ray");
+                let children = [ends.reflected(), ends.transmitted()];
+                open += children.iter().filter(|&&b| b == Branch::Grown).count();
+                open -= 1;
+                let mut previous = None;
+                for _ in 0..node.lights {
+                    let (hit, crossed) = reader.light();
+                    assert!(previous < Some(hit.light), "lights out of order");
+                    assert!((hit.light as usize) < lights, "light {}", hit.light);
+                    assert!(crossed.is_sorted(), "crossings out of order");
+                    assert!(crossed.iter().all(|&m| (m as usize) < materials), "crossed material");
+                    let finite = hit.n_dot_l.is_finite() && hit.one_minus_r_dot_v.is_finite();
+                    assert!(finite, "cosines of {hit:?}");
+                    previous = Some(hit.light);
+                }
+            }
+        }
+        let end = reader.at;
+        assert_eq!(end.node as usize, self.nodes.len(), "nodes left over");
+        assert_eq!(end.light as usize, self.lights.len(), "lights left over");
+        assert_eq!(end.crossing as usize, self.crossings.len(), "crossings left over");
+    }
+}
+
+fn assign<T: Copy>(to: &mut Vec<T>, from: &[T]) {
+    to.clear();
+    to.reserve_exact(from.len());
+    to.extend_from_slice(from);
+}
+
+/// Reads a tile's trees in order.
+pub struct Reader<'a> {
+    trees: &'a TileTrees,
+    at: Start,
+}
+
+impl<'a> Reader<'a> {
+    /// Whether the next sample's ray met the scene; its nodes follow.
+    #[inline(always)]
+    pub fn sample(&mut self) -> bool {
+        self.at.sample += 1;
+        self.trees.hits[self.at.sample as usize - 1]
+    }
+
+    /// The next node; its lights follow.
+    #[inline(always)]
+    pub fn node(&mut self) -> &'a Node {
+        self.at.node += 1;
+        &self.trees.nodes[self.at.node as usize - 1]
+    }
+
+    /// The next light of the present node, with the materials crossed, or the one that blocked it.
+    #[inline(always)]
+    pub fn light(&mut self) -> (&'a LightHit, &'a [u16]) {
+        let hit = &self.trees.lights[self.at.light as usize];
+        let from = self.at.crossing as usize;
+        let count = if hit.crossed == BLOCKED { 1 } else { hit.crossed as usize };
+        self.at.light += 1;
+        self.at.crossing += count as u32;
+        (hit, &self.trees.crossings[from..from + count])
+    }
+}
+
+impl Sink for TileTrees {
+    fn block(&mut self) {
+        self.blocks.push(Start {
+            sample: self.hits.len() as u32,
+            node: self.nodes.len() as u32,
+            light: self.lights.len() as u32,
+            crossing: self.crossings.len() as u32,
+        });
+    }
+
+    #[inline(always)]
+    fn sample(&mut self, hit: bool) {
+        self.hits.push(hit);
+    }
+
+    #[inline(always)]
+    fn node(&mut self, node: Node) -> u32 {
+        self.nodes.push(node);
+        self.nodes.len() as u32 - 1
+    }
+
+    #[inline(always)]
+    fn missed(&mut self, parent: u32, side: Side) {
+        let ends = &mut self.nodes[parent as usize].ends;
+        *ends = match side {
+            Side::Reflected => Ends::new(Branch::Missed, ends.transmitted(), ends.total()),
+            Side::Transmitted => Ends::new(ends.reflected(), Branch::Missed, ends.total()),
+        };
+    }
+
+    #[inline(always)]
+    fn light(&mut self, hit: LightHit, crossed: &[u16]) {
+        self.lights.push(hit);
+        self.crossings.extend_from_slice(crossed);
+        let last = self.nodes.len() - 1;
+        self.nodes[last].lights += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn small() -> TileTrees {
+        let mut trees = TileTrees::default();
+        trees.block();
+        trees.sample(true);
+        let node = Node {
+            t: 1.0,
+            primitive: 0,
+            material: 0,
+            lights: 0,
+            slot: 0,
+            ends: Ends::new(Branch::Grown, Branch::Zero, false),
+        };
+        trees.node(node);
+        let lit = LightHit { light: 0, crossed: 2, n_dot_l: 0.5, one_minus_r_dot_v: 0.25 };
+        trees.light(lit, &[0, 1]);
+        trees.node(Node { ends: Ends::new(Branch::Zero, Branch::Grown, false), ..node });
+        trees.node(Node { ends: Ends::new(Branch::Grown, Branch::Absent, true), ..node });
+        trees.missed(2, Side::Reflected);
+        trees.sample(false);
+        trees
+    }
+
+    #[test]
+    fn branches_pack_and_unpack() {
+        for a in BRANCHES {
+            for b in BRANCHES {
+                for total in [false, true] {
+                    let ends = Ends::new(a, b, total);
+                    assert_eq!((ends.reflected(), ends.transmitted(), ends.total()), (a, b, total));
+                }
+            }
+        }
+        assert_eq!(size_of::<Node>(), 24);
+        assert_eq!(size_of::<LightHit>(), 12);
+    }
+
+    #[test]
+    fn a_sound_tile_validates() {
+        small().validate(2, 1);
+    }
+
+    #[test]
+    #[should_panic(expected = "nodes left over")]
+    fn a_lost_branch_is_found() {
+        let mut trees = small();
+        trees.nodes[0].ends = Ends::new(Branch::Zero, Branch::Zero, false);
+        trees.validate(2, 1);
+    }
+
+    #[test]
+    #[should_panic(expected = "crossings out of order")]
+    fn unsorted_crossings_are_found() {
+        let mut trees = small();
+        trees.crossings.reverse();
+        trees.validate(2, 1);
+    }
+}

@@ -1,0 +1,121 @@
+//! The matrix product on the CPU: tiles in parallel, vector lanes across pixels.
+//!
+//! A pixel is summed term after term from +0 in canonical order. Terms that are zero are skipped:
+//! adding zero changes no bit of a sum that began at +0, because no coefficient in front of it is
+//! infinite and no partial sum is −0.
+
+use fearless_simd::{Level, dispatch};
+use rayon::ThreadPool;
+use rayon::prelude::*;
+
+use crate::film::develop::{FrameRows, tile_rows};
+use crate::film::layout::{LANES, TILE_BLOCKS};
+use crate::film::{Film, FilmBlock, Frame};
+use crate::fold::transport::{Plane, Transport, TransportTile};
+
+/// Which tiles to compute.
+#[derive(Clone, Copy, Debug)]
+pub enum Tiles<'a> {
+    /// Every one.
+    All,
+    /// Those marked `true`.
+    Marked(&'a [bool]),
+}
+
+impl Tiles<'_> {
+    fn has(self, tile: usize) -> bool {
+        match self {
+            Tiles::All => true,
+            Tiles::Marked(marks) => marks[tile],
+        }
+    }
+}
+
+/// The linear picture of all tiles, into a film of the transport's layout.
+pub fn film(pool: &ThreadPool, transport: &Transport, values: &[[f32; 4]], film: &mut Film) {
+    assert_eq!(film.layout, transport.layout, "a film of the same cut");
+    let level = Level::new();
+    pool.install(|| {
+        let parts = film.blocks.par_chunks_exact_mut(TILE_BLOCKS);
+        parts.zip(&transport.tiles).for_each_init(Vec::new, |gathered, (blocks, tile)| {
+            gather(tile, values, gathered);
+            dispatch!(level, _simd => film_tile(tile, gathered, blocks));
+        });
+    });
+}
+
+/// The picture as shown, of the tiles asked for: product, `gain` and sRGB in one pass.
+pub fn frame(
+    pool: &ThreadPool,
+    transport: &Transport,
+    values: &[[f32; 4]],
+    gain: f32,
+    tiles: Tiles,
+    frame: &mut Frame,
+) {
+    assert_eq!(frame.size, transport.layout.size, "a frame of the same size");
+    let level = Level::new();
+    let columns = transport.layout.grid()[0];
+    let rows: Vec<FrameRows> = tile_rows(frame).collect();
+    pool.install(|| {
+        rows.into_par_iter().enumerate().for_each_init(Vec::new, |gathered, (row, mut rows)| {
+            for column in 0..columns {
+                let index = row * columns + column;
+                if tiles.has(index) {
+                    let tile = &transport.tiles[index];
+                    gather(tile, values, gathered);
+                    dispatch!(level, _simd => frame_tile(tile, gathered, gain, column, &mut rows));
+                }
+            }
+        });
+    });
+}
+
+/// The values of a tile's terms, in the order of its dictionary.
+#[inline(always)]
+fn gather(tile: &TransportTile, values: &[[f32; 4]], gathered: &mut Vec<[f32; 4]>) {
+    gathered.clear();
+    gathered.extend(tile.terms.iter().map(|&term| values[term as usize]));
+}
+
+#[inline(always)]
+fn film_tile(tile: &TransportTile, values: &[[f32; 4]], blocks: &mut [FilmBlock]) {
+    for (block, out) in blocks.iter_mut().enumerate() {
+        let (entries, planes) = tile.block(block);
+        *out = sum(entries, planes, values);
+    }
+}
+
+#[inline(always)]
+fn frame_tile(
+    tile: &TransportTile,
+    values: &[[f32; 4]],
+    gain: f32,
+    column: usize,
+    rows: &mut FrameRows,
+) {
+    for block in 0..TILE_BLOCKS {
+        let (entries, planes) = tile.block(block);
+        rows.put(column, block, &sum(entries, planes, values), gain);
+    }
+}
+
+/// Σ coefficient · value for the 16 pixels of a block.
+#[inline(always)]
+fn sum(entries: &[u32], planes: &[Plane], values: &[[f32; 4]]) -> FilmBlock {
+    let mut red = [0.0f32; LANES];
+    let mut green = [0.0f32; LANES];
+    let mut blue = [0.0f32; LANES];
+    for (&entry, Plane(plane)) in entries.iter().zip(planes) {
+        let [r, g, b, lit] = values[entry as usize];
+        if lit == 0.0 {
+            continue;
+        }
+        for i in 0..LANES {
+            red[i] += plane[i] * r;
+            green[i] += plane[i] * g;
+            blue[i] += plane[i] * b;
+        }
+    }
+    FilmBlock([red, green, blue])
+}
