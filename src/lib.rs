@@ -27,3 +27,8 @@ pub mod forest;
 pub mod fold;
 // parameters and transport to light
 pub mod shade;
+// the program without a face
+pub mod session;
+// faces
+pub mod bench;
+pub mod cli;

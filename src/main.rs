@@ -1,3 +1,16 @@
-//! The `rayforest` program.
+//! The `rayforest` program: parses the command line, enters a mode, prints what went wrong.
 
-fn main() {}
+use std::process::ExitCode;
+
+use clap::Parser;
+
+fn main() -> ExitCode {
+    let arguments = rayforest::cli::Arguments::parse();
+    match rayforest::cli::run(arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            rayforest::cli::report(&failure);
+            ExitCode::from(failure.code)
+        }
+    }
+}

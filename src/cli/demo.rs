@@ -1,0 +1,75 @@
+//! The program without a command: renders a scene, re-shades it by some edits, prints both times.
+
+use std::path::{Path, PathBuf};
+
+use super::render::edit_line;
+use super::{Failure, print, read_scene, say};
+use crate::film::write::{Format, picture};
+use crate::progress::Progress;
+use crate::scene::path::set;
+use crate::scene::{Scene, read, write};
+use crate::session::{Options, Session};
+
+/// The scene that is always there.
+const BUILT_IN: &str = include_str!("../../scenes/whitted.toml");
+
+pub(crate) fn run(file: Option<&Path>) -> Result<(), Failure> {
+    let scene = match file {
+        Some(file) => read_scene(file)?,
+        None => read::text(BUILT_IN, Path::new("whitted.toml")).map_err(Failure::input)?,
+    };
+    let progress = Progress::default();
+    let mut session = Session::open(scene, Options::default(), &progress).map_err(Failure::job)?;
+    let report = session.trace_report();
+    let [width, height] = session.scene().picture.size;
+    print(&format!(
+        "traced {width}×{height}, {} samples per pixel, {:.1} million rays: {:.0} ms",
+        session.scene().trace.samples,
+        report.rays.total() as f64 / 1e6,
+        report.seconds * 1e3
+    ));
+    save(&session, "rayforest.png".into())?;
+    let traced = report.seconds;
+    for (number, (assignment, edited)) in edits(session.scene()).into_iter().enumerate() {
+        let report = session.edit(edited, &progress).map_err(Failure::job)?;
+        let gain = traced * 1e3 / report.milliseconds;
+        print(&format!("{}, {gain:.0} times faster", edit_line(&assignment, &report)));
+        save(&session, format!("rayforest-edit-{}.png", number + 1).into())?;
+    }
+    Ok(())
+}
+
+fn save(session: &Session, file: PathBuf) -> Result<(), Failure> {
+    let scene = session.scene();
+    let text = write::text(scene);
+    let exposure = scene.picture.exposure;
+    picture(&file, Format::Png8, &session.film(), exposure, &text).map_err(Failure::job)?;
+    say(&format!("wrote {}", file.display()));
+    Ok(())
+}
+
+/// Edits that show what stays live: a light, a surface, a highlight. Each builds on the one before.
+fn edits(scene: &Scene) -> Vec<(String, Scene)> {
+    let mut wishes = Vec::new();
+    if let Some(light) = scene.lights.first() {
+        wishes.push((format!("lights.{}.color", light.name), "[1.0, 0.75, 0.5]"));
+    }
+    if let Some(material) = scene.materials.first() {
+        wishes.push((format!("materials.{}.diffuse", material.name), "0.35"));
+    }
+    if let Some(material) = scene.materials.iter().find(|m| !m.specular.is_black()) {
+        wishes.push((format!("materials.{}.shininess", material.name), "12"));
+    }
+    if let Some(material) = scene.materials.iter().rev().find(|m| !m.reflect.is_black()) {
+        wishes.push((format!("materials.{}.reflect", material.name), "[0.2, 0.3, 0.5]"));
+    }
+    let mut scene = scene.clone();
+    let mut edits = Vec::new();
+    for (path, value) in wishes {
+        // A path that a strange name makes unreadable is left out, not an error.
+        if set(&mut scene, &path, value).is_ok() {
+            edits.push((format!("{path} = {value}"), scene.clone()));
+        }
+    }
+    edits
+}

@@ -1,0 +1,216 @@
+//! The command line: results on standard output, messages on standard error, exit codes.
+
+mod demo;
+mod inspect;
+mod render;
+
+use std::fmt;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::scene::{Scene, path, read};
+use crate::session::Options;
+
+/// Traces a scene once, keeps every pixel's ray tree, and re-shades it exactly after every edit.
+#[derive(Debug, Parser)]
+#[command(name = "rayforest", version, about, args_conflicts_with_subcommands = true)]
+pub struct Arguments {
+    /// What to do; without it the scene (or the built-in one) is rendered and re-shaded by some edits.
+    #[command(subcommand)]
+    mode: Option<Mode>,
+    /// A scene file.
+    scene: Option<PathBuf>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Mode {
+    /// Trace a scene, edit it, write the picture
+    Render(render::Render),
+    /// Measure tracing, folding and re-shading
+    Bench(Bench),
+    /// Show a pixel's ray tree, its terms and their shares
+    Inspect(inspect::Inspect),
+    /// Read a scene and report every mistake in it
+    Check(Check),
+}
+
+#[derive(Debug, Args)]
+struct Check {
+    /// A scene file.
+    scene: PathBuf,
+}
+
+/// What to measure.
+#[derive(Debug, Args)]
+struct Bench {
+    /// Scene files.
+    #[arg(required = true)]
+    scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    common: Common,
+    /// Write the figures to this file; `-` for standard output.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// Options that every mode with a picture has.
+#[derive(Debug, Args)]
+pub(crate) struct Common {
+    /// Size of the picture, e.g. 1920x1080, in place of the scene's.
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    size: Option<[u32; 2]>,
+    /// Samples per pixel in place of the scene's.
+    #[arg(long, value_name = "N")]
+    samples: Option<u32>,
+    /// Threads; all cores if not given.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Memory for trees, matrix and highlights in GiB; half of the machine's if not given.
+    #[arg(long, value_name = "GIB", value_parser = parse_memory)]
+    memory: Option<f64>,
+}
+
+/// A command that ended without its result.
+#[derive(Debug)]
+pub struct Failure {
+    /// Exit code: 1 where the job failed, 2 where the command or the scene is at fault.
+    pub code: u8,
+    message: String,
+}
+
+impl Failure {
+    fn input(message: impl fmt::Display) -> Failure {
+        Failure { code: 2, message: message.to_string() }
+    }
+
+    fn job(message: impl fmt::Display) -> Failure {
+        Failure { code: 1, message: message.to_string() }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+/// Prints a failure to standard error.
+pub fn report(failure: &Failure) {
+    say(&format!("error: {failure}"));
+}
+
+/// Does what the command line asks for.
+pub fn run(arguments: Arguments) -> Result<(), Failure> {
+    match arguments.mode {
+        None => demo::run(arguments.scene.as_deref()),
+        Some(Mode::Render(render)) => render.run(),
+        Some(Mode::Inspect(inspect)) => inspect.run(),
+        Some(Mode::Check(check)) => check.run(),
+        Some(Mode::Bench(bench)) => bench.run(),
+    }
+}
+
+impl Check {
+    fn run(self) -> Result<(), Failure> {
+        let scene = read_scene(&self.scene)?;
+        print(&format!(
+            "{}: no mistakes; {} solids, {} materials, {} lights",
+            self.scene.display(),
+            scene.solids.len(),
+            scene.materials.len(),
+            scene.lights.len()
+        ));
+        Ok(())
+    }
+}
+
+impl Bench {
+    fn run(self) -> Result<(), Failure> {
+        let mut rows = Vec::new();
+        for file in &self.scenes {
+            let mut scene = read_scene(file)?;
+            let options = self.common.apply(&mut scene)?;
+            let name = file.file_stem().map_or_else(String::new, |n| n.to_string_lossy().into());
+            say(&format!("measuring {name} …"));
+            let row = crate::bench::measure(&name, scene, options).map_err(Failure::job)?;
+            say(&crate::bench::summary(&row));
+            rows.push(row);
+        }
+        let text = serde_json::to_string_pretty(&rows).map_err(Failure::job)?;
+        match self.json {
+            Some(file) => write_text(&file, &text),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Common {
+    /// Applies the options to a scene and gives the session's.
+    pub(crate) fn apply(&self, scene: &mut Scene) -> Result<Options, Failure> {
+        if let Some([w, h]) = self.size {
+            set(scene, "picture.size", &format!("[{w}, {h}]"), "--size")?;
+        }
+        if let Some(samples) = self.samples {
+            set(scene, "trace.samples", &samples.to_string(), "--samples")?;
+        }
+        let mut options = Options::default();
+        if let Some(threads) = self.threads {
+            options.threads = usize::from(threads);
+        }
+        if let Some(gib) = self.memory {
+            options.memory = (gib * f64::from(1 << 30)) as u64;
+        }
+        Ok(options)
+    }
+}
+
+/// Reads a scene file; the failure lists its mistakes.
+pub(crate) fn read_scene(file: &Path) -> Result<Scene, Failure> {
+    read::file(file).map_err(Failure::input)
+}
+
+/// Sets one parameter; the failure names the option that asked for it.
+pub(crate) fn set(scene: &mut Scene, name: &str, value: &str, option: &str) -> Result<(), Failure> {
+    path::set(scene, name, value).map_err(|e| Failure::input(format!("{option}: {e}")))
+}
+
+/// A line of results.
+#[expect(clippy::print_stdout, reason = "this is the face that prints")]
+pub(crate) fn print(line: &str) {
+    // A reader that closed the pipe has had enough.
+    let _ = writeln!(std::io::stdout(), "{line}");
+}
+
+/// A message for the person.
+#[expect(clippy::print_stderr, reason = "this is the face that prints")]
+pub(crate) fn say(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
+}
+
+/// Writes text to a file, or to standard output for `-`.
+pub(crate) fn write_text(file: &Path, text: &str) -> Result<(), Failure> {
+    if file == Path::new("-") {
+        print(text);
+        return Ok(());
+    }
+    crate::film::write::atomically(file, |out| {
+        out.write_all(text.as_bytes()).and_then(|()| out.write_all(b"\n")).map_err(|e| e.to_string())
+    })
+    .map_err(Failure::job)
+}
+
+fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let parts = text.split_once(['x', 'X']).and_then(|(w, h)| {
+        Some([w.trim().parse().ok()?, h.trim().parse().ok()?])
+    });
+    parts.ok_or_else(|| format!("`{text}` is not a size such as 1920x1080"))
+}
+
+fn parse_memory(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(gib) if gib.is_finite() && gib > 0.0 && gib <= 1e6 => Ok(gib),
+        _ => Err(format!("`{text}` is not a number of GiB above 0")),
+    }
+}

@@ -1,0 +1,158 @@
+//! `rayforest render`: trace, edit as a slider would, write the picture and the statistics.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde_json::{Value, json};
+
+use super::{Common, Failure, print, read_scene, say, set, write_text};
+use crate::film::write::{Format, picture};
+use crate::forest::grow::RayCounts;
+use crate::progress::Progress;
+use crate::scene::write;
+use crate::session::{EditReport, Session};
+
+#[derive(Debug, Args)]
+pub(crate) struct Render {
+    /// A scene file.
+    scene: PathBuf,
+    /// The picture: .png or .exr.
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Bits per channel of a PNG.
+    #[arg(long, default_value = "8", value_parser = ["8", "16"])]
+    bits: String,
+    /// Set a parameter before the trace, e.g. materials.tiles.diffuse=0.5; may be repeated.
+    #[arg(long, value_name = "PATH=VALUE")]
+    set: Vec<String>,
+    /// Set a parameter after the trace, as a slider would; may be repeated.
+    #[arg(long, value_name = "PATH=VALUE")]
+    edit: Vec<String>,
+    /// Write what was done, and for every edit its class, rays and time, as JSON; `-` for
+    /// standard output.
+    #[arg(long, value_name = "FILE")]
+    stats: Option<PathBuf>,
+    #[command(flatten)]
+    common: Common,
+}
+
+impl Render {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let format = Format::of(&self.output, self.bits == "16").map_err(Failure::input)?;
+        let mut scene = read_scene(&self.scene)?;
+        let options = self.common.apply(&mut scene)?;
+        for assignment in &self.set {
+            let (path, value) = split(assignment, "--set")?;
+            set(&mut scene, path, value, "--set")?;
+        }
+        // A mistake in an edit is found before the trace, not after it.
+        let edits = self.edits(&scene)?;
+        let progress = Progress::default();
+        let mut session = Session::open(scene, options, &progress).map_err(Failure::job)?;
+        let mut stats = opening_stats(&session);
+        let mut reports = Vec::new();
+        for (assignment, edited) in edits {
+            let report = session.edit(edited, &progress).map_err(Failure::job)?;
+            say(&edit_line(assignment, &report));
+            reports.push(edit_stats(assignment, &report));
+        }
+        stats["edits"] = Value::Array(reports);
+        let text = write::text(session.scene());
+        let exposure = session.scene().picture.exposure;
+        picture(&self.output, format, &session.film(), exposure, &text).map_err(Failure::job)?;
+        if let Some(file) = &self.stats {
+            let text = serde_json::to_string_pretty(&stats).map_err(Failure::job)?;
+            write_text(file, &text)?;
+        }
+        let report = session.trace_report();
+        let rays = report.rays.total() as f64 / 1e6;
+        if self.stats.as_deref() != Some("-".as_ref()) {
+            let shown = self.output.display();
+            print(&format!("{shown}: traced in {:.2} s, {rays:.2} million rays", report.seconds));
+        }
+        Ok(())
+    }
+
+    /// The scene after every edit, in order.
+    fn edits(
+        &self,
+        scene: &crate::scene::Scene,
+    ) -> Result<Vec<(&str, crate::scene::Scene)>, Failure> {
+        let mut scene = scene.clone();
+        let mut edits = Vec::new();
+        for assignment in &self.edit {
+            let (path, value) = split(assignment, "--edit")?;
+            set(&mut scene, path, value, "--edit")?;
+            edits.push((assignment.as_str(), scene.clone()));
+        }
+        Ok(edits)
+    }
+}
+
+fn split<'a>(assignment: &'a str, option: &str) -> Result<(&'a str, &'a str), Failure> {
+    assignment.split_once('=').map(|(p, v)| (p.trim(), v.trim())).ok_or_else(|| {
+        Failure::input(format!("{option}: `{assignment}` is not of the form PATH=VALUE"))
+    })
+}
+
+/// One line about an edit.
+pub(crate) fn edit_line(assignment: &str, report: &EditReport) -> String {
+    let mut line = format!(
+        "{assignment}: {} in {:.2} ms, {} rays",
+        report.class,
+        report.milliseconds,
+        report.rays.total()
+    );
+    if let Some(reason) = &report.reason {
+        line += &format!(" ({reason})");
+    }
+    line
+}
+
+fn opening_stats(session: &Session) -> Value {
+    let report = session.trace_report();
+    let (scene, options) = (session.scene(), session.options());
+    json!({
+        "size": scene.picture.size,
+        "samples": scene.trace.samples,
+        "threads": options.threads,
+        "memory_budget": options.memory,
+        "primitives": session.geometry().primitives(),
+        "geometry_s": session.geometry_seconds(),
+        "trace_s": report.seconds,
+        "fold_s": report.fold_seconds,
+        "rays": rays(report.rays),
+        "nodes": report.nodes,
+        "distinct_terms": session.transport().tiles.iter().flat_map(|t| &t.terms)
+            .collect::<std::collections::HashSet<_>>().len(),
+        "bytes": {
+            "forest": session.forest().bytes(),
+            "transport": session.transport().bytes(),
+            "highlights": session.transport().highlight_bytes(),
+        },
+        "released_tiles": session.forest().released(),
+    })
+}
+
+fn edit_stats(assignment: &str, report: &EditReport) -> Value {
+    json!({
+        "edit": assignment,
+        "class": report.class.to_string(),
+        "reason": report.reason,
+        "rays": rays(report.rays),
+        "pixels": report.pixels,
+        "milliseconds": report.milliseconds,
+    })
+}
+
+/// Ray counts as JSON.
+pub(crate) fn rays(counts: RayCounts) -> Value {
+    let RayCounts { camera, reflected, transmitted, shadow } = counts;
+    json!({
+        "total": counts.total(),
+        "camera": camera,
+        "reflected": reflected,
+        "transmitted": transmitted,
+        "shadow": shadow,
+    })
+}

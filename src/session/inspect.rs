@@ -1,0 +1,179 @@
+//! One pixel in detail: its ray trees, its terms, and each term's share of its light.
+
+use crate::color::Rgb;
+use crate::film::layout::{LANES, Layout, Place};
+use crate::fold::Folder;
+use crate::forest::grow::Grower;
+use crate::forest::tree::{BLOCKED, Branch, TileTrees};
+use crate::geometry::Geometry;
+use crate::progress::{Cancelled, Progress};
+use crate::scene::Scene;
+use crate::scene::factor::{Factor, FactorValues};
+use crate::shade::terms::TermValues;
+
+/// All that is known of a pixel.
+pub struct Inspection {
+    /// Its light, before exposure: the sum of all shares in their order.
+    pub light: Rgb,
+    /// The trees of its samples.
+    pub samples: Vec<Option<InspectedNode>>,
+    /// Its terms, in the order of summation.
+    pub terms: Vec<TermShare>,
+}
+
+/// A term and what it adds to the pixel.
+pub struct TermShare {
+    /// Its factors.
+    pub factors: Vec<Factor>,
+    /// The coefficient in front of it.
+    pub coefficient: f32,
+    /// Coefficient times value.
+    pub share: Rgb,
+}
+
+/// A node with its branches.
+pub struct InspectedNode {
+    /// Distance along the ray.
+    pub t: f64,
+    /// Index of the solid.
+    pub solid: u32,
+    /// Index of the material.
+    pub material: u16,
+    /// Slot of its paint.
+    pub slot: u8,
+    /// The lights before the surface.
+    pub lights: Vec<InspectedLight>,
+    /// The mirror ray's branch and node.
+    pub reflected: (Branch, Option<Box<InspectedNode>>),
+    /// The refracted ray's branch and node.
+    pub transmitted: (Branch, Option<Box<InspectedNode>>),
+    /// Whether the mirror ray carries the factor of total reflection.
+    pub total: bool,
+}
+
+/// A light and what its shadow ray met.
+pub struct InspectedLight {
+    /// Index of the light.
+    pub light: u16,
+    /// Whether an opaque solid, of the one material in `crossed`, stopped it.
+    pub blocked: bool,
+    /// N·L.
+    pub n_dot_l: f32,
+    /// R·V.
+    pub r_dot_v: f32,
+    /// Materials crossed.
+    pub crossed: Vec<u16>,
+}
+
+/// Traces one pixel of a scene and takes it apart.
+///
+/// # Panics
+/// If the pixel is outside the picture.
+pub fn pixel(
+    scene: &Scene,
+    geometry: &Geometry,
+    pixel: [u32; 2],
+    progress: &Progress,
+) -> Result<Inspection, Cancelled> {
+    let layout = Layout::new(scene.picture.size);
+    let place = layout.place(pixel);
+    let grower = Grower::new(scene, geometry);
+    let mut trees = TileTrees::default();
+    grower.block(&mut grower.worker(), (place.tile, place.block), &mut trees, progress)?;
+    let samples = scene.trace.samples;
+    let covered: [bool; LANES] =
+        std::array::from_fn(|lane| layout.pixel(Place { lane, ..place }).is_some());
+    let before = covered[..place.lane].iter().filter(|c| **c).count() as u32 * samples;
+    let mut reader = Walk { trees: &trees, node: 0, light: 0, crossing: 0, geometry };
+    for sample in 0..before {
+        if trees.hits[sample as usize] {
+            reader.node();
+        }
+    }
+    let hits = before..before + samples;
+    let samples_trees = hits.map(|s| trees.hits[s as usize].then(|| reader.node())).collect();
+    let (terms, light) = terms(scene, &trees, covered, place.lane);
+    Ok(Inspection { light, samples: samples_trees, terms })
+}
+
+/// The terms of one lane of a block, and their sum.
+fn terms(
+    scene: &Scene,
+    trees: &TileTrees,
+    covered: [bool; LANES],
+    lane: usize,
+) -> (Vec<TermShare>, Rgb) {
+    let shininess: Vec<f32> = scene.materials.iter().map(|m| m.shininess).collect();
+    let mut folder = Folder::default();
+    folder.begin_tile();
+    folder.block(&mut trees.read(0), covered, scene.trace.samples);
+    let weight = 1.0 / scene.trace.samples as f32;
+    let folded = folder.finish_tile(Default::default(), weight, &shininess);
+    let mut values = TermValues::default();
+    values.evaluate(folded.trie, &FactorValues::new(scene));
+    let mut light = Rgb::BLACK;
+    let mut shares = Vec::new();
+    let (entries, planes) = folded.tile.block(0);
+    for (&entry, plane) in entries.iter().zip(planes) {
+        let id = folded.tile.terms[entry as usize];
+        let [r, g, b, _] = values.values[id as usize];
+        let coefficient = plane.0[lane];
+        let share = Rgb([r, g, b]) * coefficient;
+        light = light + share;
+        if coefficient != 0.0 {
+            shares.push(TermShare { factors: folded.trie.factors(id), coefficient, share });
+        }
+    }
+    (shares, light)
+}
+
+/// Reads nodes in preorder and builds them into trees.
+struct Walk<'a> {
+    trees: &'a TileTrees,
+    node: usize,
+    light: usize,
+    crossing: usize,
+    geometry: &'a Geometry,
+}
+
+impl Walk<'_> {
+    /// The next tree. A tree is at most 64 deep, and so is the recursion.
+    fn node(&mut self) -> InspectedNode {
+        let node = self.trees.nodes[self.node];
+        self.node += 1;
+        let lights = (0..node.lights).map(|_| self.light()).collect();
+        let reflected = self.branch(node.ends.reflected());
+        let transmitted = self.branch(node.ends.transmitted());
+        InspectedNode {
+            t: node.t,
+            solid: self.geometry.solid(node.primitive),
+            material: node.material,
+            slot: node.slot,
+            lights,
+            reflected,
+            transmitted,
+            total: node.ends.total(),
+        }
+    }
+
+    fn branch(&mut self, branch: Branch) -> (Branch, Option<Box<InspectedNode>>) {
+        let grown = branch == Branch::Grown;
+        (branch, grown.then(|| Box::new(self.node())))
+    }
+
+    fn light(&mut self) -> InspectedLight {
+        let hit = self.trees.lights[self.light];
+        self.light += 1;
+        let blocked = hit.crossed == BLOCKED;
+        let count = if blocked { 1 } else { usize::from(hit.crossed) };
+        let crossed = self.trees.crossings[self.crossing..self.crossing + count].to_vec();
+        self.crossing += count;
+        InspectedLight {
+            light: hit.light,
+            blocked,
+            n_dot_l: hit.n_dot_l,
+            r_dot_v: 1.0 - hit.one_minus_r_dot_v,
+            crossed,
+        }
+    }
+}

@@ -1,0 +1,356 @@
+//! The program without a window: a scene in, a picture out, and the least work for every edit.
+
+pub mod inspect;
+pub mod trace;
+
+use std::fmt;
+use std::time::Instant;
+
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use crate::film::{Film, Frame};
+use crate::fold::highlight::HighlightPower;
+use crate::fold::transport::Transport;
+use crate::forest::Forest;
+use crate::forest::grow::{Grower, RayCounts};
+use crate::forest::tree::TileTrees;
+use crate::geometry::Geometry;
+use crate::math::exposure_factor;
+use crate::progress::{Cancelled, Progress};
+use crate::scene::Scene;
+use crate::scene::change::Change;
+use crate::scene::factor::FactorValues;
+use crate::shade::cpu::{self, Tiles};
+use crate::shade::terms::TermValues;
+use trace::{TraceError, TraceReport, trace};
+
+/// What a session may use.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Threads, ≥ 1.
+    pub threads: usize,
+    /// Bytes that trees, matrix and highlight lists may take together.
+    pub memory: u64,
+}
+
+impl Default for Options {
+    /// All cores and half of the machine's memory.
+    fn default() -> Options {
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let machine = sysinfo::System::new().map_or(0, |mut system| {
+            system.refresh_memory();
+            system.total_memory()
+        });
+        Options { threads, memory: (machine / 2).max(1 << 28) }
+    }
+}
+
+/// What an edit cost, from cheapest to dearest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Class {
+    /// Nothing visible changed.
+    None,
+    /// Terms and product.
+    Reshade,
+    /// Some materials' coefficients from kept angles, then terms and product.
+    Refold,
+    /// Some pixels' trees, then all of the above.
+    Regrow,
+    /// Everything.
+    Retrace,
+}
+
+impl fmt::Display for Class {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Class::None => "none",
+            Class::Reshade => "reshade",
+            Class::Refold => "refold",
+            Class::Regrow => "regrow",
+            Class::Retrace => "retrace",
+        })
+    }
+}
+
+/// What was done for an edit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EditReport {
+    /// Its class.
+    pub class: Class,
+    /// For a trace: what asked for it.
+    pub reason: Option<String>,
+    /// Rays cast.
+    pub rays: RayCounts,
+    /// Pixels whose trees were grown.
+    pub pixels: u64,
+    /// From the edit to the finished 8-bit picture.
+    pub milliseconds: f64,
+}
+
+/// A scene, its kept trees, and its picture, always in step: after every successful call the frame
+/// is what a fresh trace of [`Session::scene`] gives, bit for bit.
+pub struct Session {
+    scene: Scene,
+    options: Options,
+    pool: ThreadPool,
+    geometry: Geometry,
+    forest: Forest,
+    transport: Transport,
+    terms: TermValues,
+    frame: Frame,
+    trace: TraceReport,
+    geometry_seconds: f64,
+}
+
+impl Session {
+    /// Traces a scene.
+    pub fn open(scene: Scene, options: Options, progress: &Progress) -> Result<Session, TraceError> {
+        assert!(options.threads > 0, "a session needs a thread");
+        let pool = ThreadPoolBuilder::new()
+            .num_threads(options.threads)
+            .build()
+            .expect("the system gives a few threads");
+        let start = Instant::now();
+        let geometry = Geometry::build(&scene, progress)?;
+        let geometry_seconds = start.elapsed().as_secs_f64();
+        let traced = trace(&scene, &geometry, &pool, options.memory, Forest::default(), progress)?;
+        let frame = Frame::new(scene.picture.size);
+        let mut session = Session {
+            scene,
+            options,
+            pool,
+            geometry,
+            forest: traced.forest,
+            transport: traced.transport,
+            terms: TermValues::default(),
+            frame,
+            trace: traced.report,
+            geometry_seconds,
+        };
+        session.evaluate_terms();
+        session.draw(Tiles::All);
+        Ok(session)
+    }
+
+    /// Makes `scene` the session's, with the least work. On an error the session keeps its old
+    /// scene and picture; trees may have been released.
+    pub fn edit(&mut self, scene: Scene, progress: &Progress) -> Result<EditReport, TraceError> {
+        let start = Instant::now();
+        let change = Change::between(&self.scene, &scene);
+        let mut report = EditReport {
+            class: Class::None,
+            reason: None,
+            rays: RayCounts::default(),
+            pixels: 0,
+            milliseconds: 0.0,
+        };
+        if let Some(reason) = self.needs_rays(&scene, &change) {
+            self.retrace(scene, progress)?;
+            report.class = Class::Retrace;
+            report.reason = Some(reason);
+            report.rays = self.trace.rays;
+            report.pixels = self.transport.layout.pixels();
+        } else {
+            report.class = self.without_rays(scene, &change);
+        }
+        report.milliseconds = start.elapsed().as_secs_f64() * 1e3;
+        Ok(report)
+    }
+
+    /// What in an edit cannot be had from what is kept.
+    fn needs_rays(&self, scene: &Scene, change: &Change) -> Option<String> {
+        if let Some(what) = change.moves_rays {
+            return Some(format!("{what} moves rays"));
+        }
+        if !change.refold.is_empty() && self.transport.tiles.iter().any(|t| t.highlights.is_none()) {
+            return Some("highlight lists were released for memory".into());
+        }
+        if change.terms {
+            let mut terms = TermValues::default();
+            terms.evaluate(&self.transport.trie, &FactorValues::new(scene));
+            let id = terms.uncovered?;
+            let factors = self.transport.trie.factors(id);
+            let names: Vec<_> = factors.iter().map(|f| f.describe(scene)).collect();
+            return Some(format!("the branch {} comes alive", names.join(" · ")));
+        }
+        None
+    }
+
+    fn without_rays(&mut self, scene: Scene, change: &Change) -> Class {
+        self.scene = scene;
+        let mut marks = vec![change.develop; self.transport.tiles.len()];
+        if !change.refold.is_empty() {
+            self.refold(&change.refold, &mut marks);
+        }
+        if change.terms {
+            let before = std::mem::take(&mut self.terms.values);
+            self.terms.values.clone_from(&before);
+            self.evaluate_terms();
+            self.mark_changed(&before, &mut marks);
+        }
+        self.draw(Tiles::Marked(&marks));
+        class_without_rays(change)
+    }
+
+    /// Folds the highlights of some materials again and marks the tiles that show them.
+    fn refold(&mut self, materials: &[u16], marks: &mut [bool]) {
+        let mut exponents = vec![None; self.scene.materials.len()];
+        for &m in materials {
+            exponents[m as usize] = Some(self.scene.materials[m as usize].shininess);
+        }
+        let weight = 1.0 / self.transport.samples as f32;
+        let tiles = self.transport.tiles.par_iter_mut().zip(marks);
+        self.pool.install(|| {
+            tiles.for_each_init(HighlightPower::default, |power, (tile, mark)| {
+                *mark |= power.refold(tile, &exponents, weight);
+            });
+        });
+    }
+
+    /// Marks the tiles whose dictionary holds a term with another value.
+    fn mark_changed(&self, before: &[[f32; 4]], marks: &mut [bool]) {
+        let after = &self.terms.values;
+        let changed: Vec<bool> = before.iter().zip(after).map(|(a, b)| a != b).collect();
+        for (mark, tile) in marks.iter_mut().zip(&self.transport.tiles) {
+            *mark = *mark || tile.terms.iter().any(|&t| changed[t as usize]);
+        }
+    }
+
+    fn retrace(&mut self, scene: Scene, progress: &Progress) -> Result<(), TraceError> {
+        let start = Instant::now();
+        let geometry = Geometry::build(&scene, progress)?;
+        self.geometry_seconds = start.elapsed().as_secs_f64();
+        let released = vec![None; self.forest.tiles.len()];
+        let old = Forest { tiles: released, ..self.forest };
+        let reuse = std::mem::replace(&mut self.forest, old);
+        let traced = trace(&scene, &geometry, &self.pool, self.options.memory, reuse, progress)?;
+        self.scene = scene;
+        self.geometry = geometry;
+        self.forest = traced.forest;
+        self.transport = traced.transport;
+        self.trace = traced.report;
+        self.frame = Frame::new(self.scene.picture.size);
+        self.evaluate_terms();
+        self.draw(Tiles::All);
+        Ok(())
+    }
+
+    fn draw(&mut self, tiles: Tiles) {
+        let gain = exposure_factor(self.scene.picture.exposure);
+        let values = &self.terms.values;
+        cpu::frame(&self.pool, &self.transport, values, gain, tiles, &mut self.frame);
+    }
+
+    /// Traces the same scene again, into the memory of the present trees.
+    pub fn trace_again(&mut self, progress: &Progress) -> Result<(), TraceError> {
+        self.retrace(self.scene.clone(), progress)
+    }
+
+    /// What making `scene` the session's would cost.
+    pub fn class_of(&self, scene: &Scene) -> Class {
+        let change = Change::between(&self.scene, scene);
+        match self.needs_rays(scene, &change) {
+            Some(_) => Class::Retrace,
+            None => class_without_rays(&change),
+        }
+    }
+
+    /// Evaluates every term of the present scene.
+    pub fn evaluate_terms(&mut self) {
+        self.terms.evaluate(&self.transport.trie, &FactorValues::new(&self.scene));
+    }
+
+    /// Shades every pixel anew, as after an edit that touches everything.
+    pub fn redraw(&mut self) {
+        self.evaluate_terms();
+        self.draw(Tiles::All);
+    }
+
+    /// The picture in linear floats, into `film`, whose memory is kept if its size fits.
+    pub fn develop_film(&self, film: &mut Film) {
+        if film.layout != self.transport.layout {
+            *film = Film::new(self.transport.layout);
+        }
+        cpu::film(&self.pool, &self.transport, &self.terms.values, film);
+    }
+
+    /// The picture in linear floats.
+    pub fn film(&self) -> Film {
+        let mut film = Film::default();
+        self.develop_film(&mut film);
+        film
+    }
+
+    /// The trees of one tile, grown again if they were released.
+    pub fn trees(&self, tile: usize, progress: &Progress) -> Result<TileTrees, Cancelled> {
+        if let Some(trees) = &self.forest.tiles[tile] {
+            return Ok(trees.clone());
+        }
+        let grower = Grower::new(&self.scene, &self.geometry);
+        let mut worker = grower.worker();
+        let mut trees = TileTrees::default();
+        for block in 0..crate::film::layout::TILE_BLOCKS {
+            grower.block(&mut worker, (tile, block), &mut trees, progress)?;
+        }
+        Ok(trees)
+    }
+
+    /// The scene shown.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// What the session may use.
+    pub fn options(&self) -> Options {
+        self.options
+    }
+
+    /// Its threads.
+    pub fn pool(&self) -> &ThreadPool {
+        &self.pool
+    }
+
+    /// The scene made ready for rays.
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// The kept trees.
+    pub fn forest(&self) -> &Forest {
+        &self.forest
+    }
+
+    /// The matrix.
+    pub fn transport(&self) -> &Transport {
+        &self.transport
+    }
+
+    /// The value of every term.
+    pub fn terms(&self) -> &TermValues {
+        &self.terms
+    }
+
+    /// The picture as shown.
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// Times and counts of the latest trace.
+    pub fn trace_report(&self) -> TraceReport {
+        self.trace
+    }
+
+    /// Time to compile the geometry.
+    pub fn geometry_seconds(&self) -> f64 {
+        self.geometry_seconds
+    }
+}
+
+fn class_without_rays(change: &Change) -> Class {
+    match change {
+        c if !c.refold.is_empty() => Class::Refold,
+        c if c.terms || c.develop => Class::Reshade,
+        _ => Class::None,
+    }
+}

@@ -1,0 +1,341 @@
+//! Traces and folds a whole picture, tile by tile on all threads, within a budget of memory.
+
+use std::fmt;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::time::{Duration, Instant};
+
+use rayon::ThreadPool;
+
+use crate::film::layout::{LANES, Layout, Place, TILE_BLOCKS};
+use crate::fold::Folder;
+use crate::fold::transport::{Transport, TransportTile};
+use crate::fold::trie::Trie;
+use crate::forest::Forest;
+use crate::forest::grow::{Discard, Grower, RayCounts, Worker};
+use crate::forest::tree::TileTrees;
+use crate::geometry::Geometry;
+use crate::progress::{Cancelled, Progress};
+use crate::scene::Scene;
+
+/// Why a trace gave no picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TraceError {
+    /// It was cancelled.
+    Cancelled,
+    /// The matrix alone, without trees and highlight lists, needs more than the budget.
+    Memory {
+        /// The budget in bytes.
+        budget: u64,
+    },
+}
+
+impl From<Cancelled> for TraceError {
+    fn from(_: Cancelled) -> TraceError {
+        TraceError::Cancelled
+    }
+}
+
+impl fmt::Display for TraceError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            TraceError::Cancelled => write!(f, "cancelled"),
+            TraceError::Memory { budget } => write!(
+                f,
+                "the picture needs more memory than the budget of {:.2} GiB: raise the budget, \
+                 or lower picture.size or trace.depth",
+                *budget as f64 / f64::from(1 << 30)
+            ),
+        }
+    }
+}
+
+impl std::error::Error for TraceError {}
+
+/// What a trace made.
+pub struct Traced {
+    /// The trees that fitted into the budget.
+    pub forest: Forest,
+    /// The matrix.
+    pub transport: Transport,
+    /// How long it took and what it cast.
+    pub report: TraceReport,
+}
+
+/// Times and counts of one trace.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TraceReport {
+    /// Wall time of all of it, without building the geometry.
+    pub seconds: f64,
+    /// Of it folding: the mean over the threads.
+    pub fold_seconds: f64,
+    /// Rays cast.
+    pub rays: RayCounts,
+    /// Nodes of all trees, kept or not.
+    pub nodes: u64,
+}
+
+/// Traces `scene` without keeping anything: what the same rays cost by themselves.
+pub fn trace_only(
+    scene: &Scene,
+    geometry: &Geometry,
+    pool: &ThreadPool,
+    progress: &Progress,
+) -> Result<TraceReport, Cancelled> {
+    let start = Instant::now();
+    let grower = Grower::new(scene, geometry);
+    let tiles = Layout::new(scene.picture.size).tiles();
+    progress.begin(tiles as u64);
+    let next = AtomicUsize::new(0);
+    let counts = pool.broadcast(|_| {
+        let mut worker = grower.worker();
+        while let Some(tile) = claim(&next, tiles) {
+            for block in 0..TILE_BLOCKS {
+                grower.block(&mut worker, (tile, block), &mut Discard, progress)?;
+            }
+            progress.step();
+        }
+        Ok(worker.rays)
+    });
+    let mut rays = RayCounts::default();
+    for count in counts {
+        rays += count?;
+    }
+    Ok(TraceReport { seconds: start.elapsed().as_secs_f64(), rays, ..TraceReport::default() })
+}
+
+/// Traces and folds `scene`. The memory of `reuse`, an earlier forest, is filled anew.
+///
+/// Each tile is folded block by block while its trees are in cache. Beyond `budget` bytes trees are
+/// released first, then highlight lists; the picture does not depend on what is kept.
+pub fn trace(
+    scene: &Scene,
+    geometry: &Geometry,
+    pool: &ThreadPool,
+    budget: u64,
+    reuse: Forest,
+    progress: &Progress,
+) -> Result<Traced, TraceError> {
+    let start = Instant::now();
+    let job = Job::new(scene, geometry, pool.current_num_threads(), budget, reuse, progress);
+    let outcomes = pool.broadcast(|_| job.work());
+    let mut report = TraceReport::default();
+    let threads = outcomes.len() as f64;
+    for outcome in outcomes {
+        let Outcome { rays, nodes, folding } = outcome?;
+        report.rays += rays;
+        report.nodes += nodes;
+        report.fold_seconds += folding.as_secs_f64() / threads;
+    }
+    let merging = Instant::now();
+    let (forest, transport) = job.finish(pool);
+    report.fold_seconds += merging.elapsed().as_secs_f64();
+    report.seconds = start.elapsed().as_secs_f64();
+    Ok(Traced { forest, transport, report })
+}
+
+/// The next tile that nobody works on.
+fn claim(next: &AtomicUsize, tiles: usize) -> Option<usize> {
+    let tile = next.fetch_add(1, Relaxed);
+    (tile < tiles).then_some(tile)
+}
+
+/// All that the workers of one trace share.
+struct Job<'a> {
+    grower: Grower<'a>,
+    layout: Layout,
+    samples: u32,
+    shininess: Vec<f32>,
+    progress: &'a Progress,
+    next: AtomicUsize,
+    slots: Vec<Mutex<Slot>>,
+    trie: Mutex<Trie>,
+    ledger: Mutex<Ledger>,
+    budget: usize,
+    /// A tile whose trees need more than this is not kept.
+    tile_limit: usize,
+}
+
+/// What is there of one tile.
+#[derive(Default)]
+struct Slot {
+    /// Memory of an earlier trace, until the tile is traced.
+    old: Option<TileTrees>,
+    trees: Option<TileTrees>,
+    transport: TransportTile,
+}
+
+/// Bytes kept so far, memory of the earlier trace included, and the tiles whose trees may be
+/// released for others.
+struct Ledger {
+    bytes: usize,
+    kept: Vec<usize>,
+}
+
+/// What one worker counted.
+struct Outcome {
+    rays: RayCounts,
+    nodes: u64,
+    folding: Duration,
+}
+
+impl<'a> Job<'a> {
+    fn new(
+        scene: &Scene,
+        geometry: &'a Geometry,
+        threads: usize,
+        budget: u64,
+        reuse: Forest,
+        progress: &'a Progress,
+    ) -> Job<'a> {
+        let layout = Layout::new(scene.picture.size);
+        // Tiles of another cut are of other sizes: their memory would not fit.
+        let reuse = if reuse.layout == layout { reuse } else { Forest::default() };
+        let ledger = Ledger { bytes: reuse.bytes(), kept: Vec::new() };
+        let mut old = reuse.tiles.into_iter();
+        let slot = |_| Mutex::new(Slot { old: old.next().flatten(), ..Slot::default() });
+        progress.begin(layout.tiles() as u64);
+        let budget = usize::try_from(budget).unwrap_or(usize::MAX);
+        Job {
+            grower: Grower::new(scene, geometry),
+            layout,
+            samples: scene.trace.samples,
+            shininess: scene.materials.iter().map(|m| m.shininess).collect(),
+            progress,
+            next: AtomicUsize::new(0),
+            slots: (0..layout.tiles()).map(slot).collect(),
+            trie: Mutex::default(),
+            ledger: Mutex::new(ledger),
+            budget,
+            tile_limit: budget / (4 * threads),
+        }
+    }
+
+    /// One thread's share of the tiles.
+    fn work(&self) -> Result<Outcome, TraceError> {
+        let mut worker = self.grower.worker();
+        let mut folder = Folder::default();
+        let mut trees = TileTrees::default();
+        let mut outcome = Outcome { rays: RayCounts::default(), nodes: 0, folding: Duration::ZERO };
+        while let Some(tile) = claim(&self.next, self.layout.tiles()) {
+            let whole = self.tile(tile, &mut worker, &mut folder, &mut trees, &mut outcome)?;
+            let folding = Instant::now();
+            let transport = self.finish_tile(&mut folder);
+            outcome.folding += folding.elapsed();
+            self.store(tile, whole.then_some(&trees), transport)?;
+            self.progress.step();
+        }
+        outcome.rays = worker.rays;
+        Ok(outcome)
+    }
+
+    /// Grows and folds the blocks of a tile; whether `trees` holds all of them in the end.
+    fn tile(
+        &self,
+        tile: usize,
+        worker: &mut Worker,
+        folder: &mut Folder,
+        trees: &mut TileTrees,
+        outcome: &mut Outcome,
+    ) -> Result<bool, Cancelled> {
+        folder.begin_tile();
+        trees.clear();
+        let mut whole = true;
+        for block in 0..TILE_BLOCKS {
+            let before = trees.nodes.len();
+            self.grower.block(worker, (tile, block), trees, self.progress)?;
+            outcome.nodes += (trees.nodes.len() - before) as u64;
+            let folding = Instant::now();
+            let covered: [bool; LANES] = std::array::from_fn(|lane| {
+                self.layout.pixel(Place { tile, block, lane }).is_some()
+            });
+            folder.block(&mut trees.read(trees.blocks.len() - 1), covered, self.samples);
+            outcome.folding += folding.elapsed();
+            whole &= trees.bytes() <= self.tile_limit;
+            if !whole {
+                trees.clear();
+            }
+        }
+        Ok(whole)
+    }
+
+    /// The tile's part of the matrix, in ids of the picture's trie.
+    fn finish_tile(&self, folder: &mut Folder) -> TransportTile {
+        let weight = 1.0 / self.samples as f32;
+        let folded = folder.finish_tile(TransportTile::default(), weight, &self.shininess);
+        let mut tile = folded.tile;
+        let mut global = vec![0u32; folded.trie.nodes().len()];
+        let mut trie = self.trie.lock().expect("no worker panicked");
+        for (id, node) in folded.trie.nodes().iter().enumerate().skip(1) {
+            let known = trie.intern(global[node.parent as usize], node.factor);
+            trie.mark(known, node.marks);
+            global[id] = known;
+        }
+        for term in &mut tile.terms {
+            *term = global[*term as usize];
+        }
+        tile
+    }
+
+    /// Keeps a tile, releasing trees, then its highlight lists, where the budget asks for it.
+    fn store(
+        &self,
+        tile: usize,
+        trees: Option<&TileTrees>,
+        mut transport: TransportTile,
+    ) -> Result<(), TraceError> {
+        let mut slot = self.slots[tile].lock().expect("no worker panicked");
+        let mut kept = slot.old.take();
+        let reused = kept.as_ref().map_or(0, TileTrees::bytes);
+        if let (Some(trees), room) = (trees, &mut kept) {
+            room.get_or_insert_default().assign(trees);
+        } else {
+            kept = None;
+        }
+        let lists = transport.highlights.as_ref().map_or(0, |h| h.bytes());
+        let mut ledger = self.ledger.lock().expect("no worker panicked");
+        ledger.bytes -= reused;
+        ledger.bytes += transport.bytes() + lists + kept.as_ref().map_or(0, TileTrees::bytes);
+        if ledger.bytes > self.budget {
+            ledger.bytes -= kept.take().map_or(0, |t| t.bytes());
+        }
+        while ledger.bytes > self.budget {
+            let Some(other) = ledger.kept.pop() else { break };
+            let trees = self.slots[other].lock().expect("no worker panicked").trees.take();
+            ledger.bytes -= trees.map_or(0, |t| t.bytes());
+        }
+        if ledger.bytes > self.budget {
+            transport.highlights = None;
+            ledger.bytes -= lists;
+        }
+        if ledger.bytes > self.budget {
+            return Err(TraceError::Memory { budget: self.budget as u64 });
+        }
+        if kept.is_some() {
+            ledger.kept.push(tile);
+        }
+        slot.trees = kept;
+        slot.transport = transport;
+        Ok(())
+    }
+
+    /// Numbers the terms canonically and puts the tiles together.
+    fn finish(self, pool: &ThreadPool) -> (Forest, Transport) {
+        use rayon::prelude::*;
+        let provisional = self.trie.into_inner().expect("no worker panicked");
+        let ranks = provisional.canonical_ranks();
+        let trie = provisional.renumbered(&ranks);
+        let slots = self.slots.into_iter().map(|s| s.into_inner().expect("no worker panicked"));
+        let (trees, mut tiles): (Vec<_>, Vec<_>) = slots.map(|s| (s.trees, s.transport)).unzip();
+        pool.install(|| {
+            tiles.par_iter_mut().for_each(|tile| {
+                for term in &mut tile.terms {
+                    *term = ranks[*term as usize];
+                }
+            });
+        });
+        let (layout, samples) = (self.layout, self.samples);
+        let forest = Forest { layout, samples, tiles: trees };
+        (forest, Transport { layout, samples, trie, tiles })
+    }
+}
