@@ -97,9 +97,7 @@ fn light(light: &Light) -> Option<Flaw> {
     let LightPlace::Direction(along) = light.place else { return None };
     let help = "give the direction in which the light shines, for example `direction = [0, 0, -1]`";
     let message = "`direction` is zero, which is no direction";
-    unit(along)
-        .is_none()
-        .then(|| Flaw::new(&["lights", &light.name, "direction"], message, help))
+    unit(along).is_none().then(|| Flaw::new(&["lights", &light.name, "direction"], message, help))
 }
 
 fn solid(solid: &Solid) -> Option<Flaw> {

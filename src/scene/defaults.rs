@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::Placement;
 use super::mesh::Mesh;
 use super::{
     Background, Camera, Lens, Light, LightPlace, Material, Paint, Picture, Scene, Shape, Solid,
     Trace,
 };
-use super::Placement;
 use crate::color::Rgb;
 
 impl Default for Scene {

@@ -13,6 +13,7 @@ pub mod mesh;
 pub mod path;
 pub mod problem;
 pub mod read;
+mod reader;
 pub mod slot;
 pub mod write;
 

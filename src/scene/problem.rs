@@ -150,10 +150,10 @@ mod tests {
 
     #[test]
     fn columns_count_characters_and_tabs_stay_tabs() {
-        let place = Place::of("a = 1\n\tö = \"ü\" x\r\nc", &(8..12));
+        let place = Place::of("a = 1\n\tö = \"ü\" x\r\nc", &(7..11));
         assert_eq!((place.line, place.column, place.width), (2, 2, 3));
         assert_eq!(place.text, "\tö = \"ü\" x");
-        let place = Place::of("a = 1\n\tö = \"ü\" x\r\nc", &(18..19));
+        let place = Place::of("a = 1\n\tö = \"ü\" x\r\nc", &(17..18));
         assert_eq!(place.caret(), "\t        ^");
     }
 

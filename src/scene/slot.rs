@@ -201,7 +201,9 @@ impl Slot<'_> {
     /// The value as TOML, which reads back as the same bits.
     pub fn text(&self, names: &Names) -> String {
         match self {
-            Slot::Coefficient(Rgb(channels), _) => one_or_three(*channels, channels.map(f32::to_bits)),
+            Slot::Coefficient(Rgb(channels), _) => {
+                one_or_three(*channels, channels.map(f32::to_bits))
+            }
             Slot::Single(x, _) => number(**x),
             Slot::Number(x, _) => number(**x),
             Slot::Whole(n, _) => n.to_string(),
@@ -365,11 +367,7 @@ impl Target<'_> {
         &self,
         value: &Spanned<DeValue<'_>>,
     ) -> Result<[T; 3], Mistake> {
-        if value.get_ref().is_array() {
-            self.three(value)
-        } else {
-            Ok([self.float(value)?; 3])
-        }
+        if value.get_ref().is_array() { self.three(value) } else { Ok([self.float(value)?; 3]) }
     }
 
     fn points(&self, value: &Spanned<DeValue<'_>>) -> Result<Vec<DVec3>, Mistake> {
