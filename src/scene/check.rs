@@ -1,15 +1,18 @@
 //! Rules that tie several numbers of a scene together: whether every camera, box and polygon makes sense.
 
+use std::collections::HashSet;
+
 use glam::DVec3;
 
+use super::direction::{TINY, unit};
 use super::fields::{self, Need, Visit};
-use super::slot::{Names, Slot, number};
+use super::slot::Slot;
+use super::toml_text::number;
+use super::value::Names;
 use super::{
     Camera, Light, LightPlace, MAX_KNOT_FACES, MAX_NAMED, MAX_PIXELS, Picture, Scene, Shape, Solid,
 };
 
-/// A vector whose components are all below this counts as zero: its square would vanish.
-const TINY: f64 = 1e-100;
 /// Sine of the smallest angle between the view and `up`.
 const PARALLEL: f64 = 1e-9;
 /// Largest distance of a polygon's corner from its plane, as a share of the polygon's extent.
@@ -50,6 +53,9 @@ pub fn relations(scene: &Scene) -> Vec<Flaw> {
     let mut flaws = Vec::new();
     flaws.extend(too_many("lights", scene.lights.iter().map(|light| &light.name)));
     flaws.extend(too_many("materials", scene.materials.iter().map(|material| &material.name)));
+    flaws.extend(twice("lights", scene.lights.iter().map(|light| &light.name)));
+    flaws.extend(twice("materials", scene.materials.iter().map(|material| &material.name)));
+    flaws.extend(twice("solids", scene.solids.iter().map(|solid| &solid.name)));
     flaws.extend(camera(&scene.camera));
     flaws.extend(picture(&scene.picture));
     flaws.extend(scene.lights.iter().filter_map(light));
@@ -57,16 +63,17 @@ pub fn relations(scene: &Scene) -> Vec<Flaw> {
     flaws
 }
 
-/// `v` in length one; `None` if it is zero (every component below 1e-100) or not finite.
-pub fn unit(v: DVec3) -> Option<DVec3> {
-    let largest = v.abs().max_element();
-    (v.is_finite() && largest >= TINY).then(|| (v / largest).normalize())
-}
-
 fn too_many<'a>(list: &str, mut names: impl Iterator<Item = &'a String>) -> Option<Flaw> {
     let name = names.nth(MAX_NAMED)?;
     let message = format!("there are more than {MAX_NAMED} {list}");
     Some(Flaw::new(&[list, name], message, "let several solids share, or leave some out"))
+}
+
+fn twice<'a>(list: &str, mut names: impl Iterator<Item = &'a String>) -> Option<Flaw> {
+    let mut seen = HashSet::new();
+    let name = names.find(|name| !seen.insert(*name))?;
+    let message = format!("two {list} have the name `{name}`");
+    Some(Flaw::new(&[list, name], message, "rename one of them"))
 }
 
 fn camera(camera: &Camera) -> Option<Flaw> {
@@ -226,9 +233,13 @@ mod tests {
         scene.background.color = Rgb([0.0, -1.0, 0.0]);
         scene.camera.eye = scene.camera.target;
         scene.solids.push(Solid::new("ball", Shape::named("sphere"), 3));
+        scene.lights = vec![Light::new("a"), Light::new("b"), Light::new("a")];
         let flaws = validate(&scene);
         let paths: Vec<String> = flaws.iter().map(|flaw| flaw.path.join(".")).collect();
-        assert_eq!(paths, ["background.color", "solids.ball.material", "camera.target"]);
+        assert_eq!(
+            paths,
+            ["background.color", "solids.ball.material", "lights.a", "camera.target"]
+        );
         assert_eq!(flaws[0].message, "`color` is -1, out of its range: 0 to 1e6");
         assert_eq!(flaws[0].help, "the nearest allowed value is 0");
     }
@@ -247,13 +258,5 @@ mod tests {
         assert_eq!(square(0.0, 0.0).unwrap(), "the polygon has no area");
         let line = [DVec3::ZERO, DVec3::X, DVec3::X * 2.0];
         assert_eq!(polygon(&line).unwrap().0, "the polygon has no area");
-    }
-
-    #[test]
-    fn unit_survives_the_extremes() {
-        assert_eq!(unit(DVec3::new(0.0, 3e-99, 0.0)), Some(DVec3::Y));
-        assert_eq!(unit(DVec3::new(0.0, 0.0, -1e300)), Some(DVec3::NEG_Z));
-        assert_eq!(unit(DVec3::ZERO), None);
-        assert_eq!(unit(DVec3::new(f64::NAN, 1.0, 0.0)), None);
     }
 }

@@ -1,6 +1,7 @@
 //! The fields of every part of a scene, listed once: names, ranges, and who may visit them.
 
-use super::slot::{Range, Slot};
+use super::range::Range;
+use super::slot::Slot;
 use super::{
     Background, Camera, Lens, Light, LightPlace, Material, Paint, Picture, Placement, Scene, Shape,
     Solid, Trace,

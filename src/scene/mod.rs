@@ -7,14 +7,19 @@
 pub mod change;
 pub mod check;
 mod defaults;
+mod direction;
 pub mod factor;
 pub mod fields;
 pub mod mesh;
+mod obj;
 pub mod path;
 pub mod problem;
+pub mod range;
 pub mod read;
 mod reader;
 pub mod slot;
+mod toml_text;
+pub mod value;
 pub mod write;
 
 use std::sync::Arc;

@@ -9,7 +9,10 @@ use super::Scene;
 use super::check;
 use super::fields::{self, Need, Visit};
 use super::problem::suggestion;
-use super::slot::{Kind, Names, Range, Slot, bare_or_quoted};
+use super::range::{Kind, Range};
+use super::slot::Slot;
+use super::toml_text::bare_or_quoted;
+use super::value::Names;
 
 /// A value of a scene that can be set by its path.
 #[derive(Clone, Debug, PartialEq)]
@@ -294,9 +297,14 @@ mod tests {
             "solids.mesh.mesh.file: `file` can only be changed in the scene file\n  \
              help: edit the scene file and open it again"
         );
-        for path in
-            ["", "camera", "camera.eye.x", "camera.eye = 1\nversion", "solids.box.sphere.radius"]
-        {
+        for path in [
+            "",
+            "camera",
+            "camera.eye.x",
+            "camera.eye = 1\nversion",
+            "camera.eye = 1 #",
+            "solids.box.sphere.radius",
+        ] {
             assert!(refused(&mut scene, path, "1").contains("no such parameter"), "{path}");
         }
     }

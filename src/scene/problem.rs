@@ -76,20 +76,27 @@ pub struct Problem {
 pub struct SceneError {
     /// The scene file.
     pub file: PathBuf,
-    /// At least one.
+    /// At least one, at most [`MOST_PROBLEMS`].
     pub problems: Vec<Problem>,
+    /// How many more there are.
+    pub left_out: usize,
 }
+
+/// The largest number of problems that is reported.
+pub const MOST_PROBLEMS: usize = 100;
 
 impl SceneError {
     /// Turns mistakes into problems with line and column, sorted by place.
     pub fn new(file: PathBuf, source: &str, mut mistakes: Vec<Mistake>) -> SceneError {
         mistakes.sort_by_key(|mistake| mistake.span.start);
+        let left_out = mistakes.len().saturating_sub(MOST_PROBLEMS);
+        mistakes.truncate(MOST_PROBLEMS);
         let problem = |Mistake { span, message, help }| Problem {
             place: Some(Place::of(source, &span)),
             message,
             help,
         };
-        SceneError { file, problems: mistakes.into_iter().map(problem).collect() }
+        SceneError { file, problems: mistakes.into_iter().map(problem).collect(), left_out }
     }
 }
 
@@ -110,6 +117,9 @@ impl fmt::Display for SceneError {
                 None => writeln!(f, "{file}: {message}")?,
             }
             write!(f, "  help: {help}")?;
+        }
+        if self.left_out > 0 {
+            write!(f, "\nand {} more", self.left_out)?;
         }
         Ok(())
     }

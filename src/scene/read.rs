@@ -20,6 +20,7 @@ pub fn file(path: &Path) -> Result<Scene, SceneError> {
             message: format!("cannot be read: {error}"),
             help: "check the name of the file and its permissions".to_owned(),
         }],
+        left_out: 0,
     })?;
     match str::from_utf8(&bytes) {
         Ok(source) => text(source, path),
@@ -367,6 +368,33 @@ mod tests {
         let lines = error.problems.iter().map(|problem| problem.place.as_ref().unwrap().line);
         // the degenerate `up` is not looked at while `[camera]` has another mistake
         assert_eq!(lines.collect::<Vec<_>>(), [3, 4, 5, 6, 9]);
+    }
+
+    #[test]
+    fn a_flood_of_mistakes_is_cut() {
+        let keys: String = (0..150).map(|i| format!("key{i} = 1\n")).collect();
+        let error = read(&format!("version = 1\n{keys}")).unwrap_err();
+        assert_eq!((error.problems.len(), error.left_out), (100, 50));
+        assert!(error.to_string().ends_with("\nand 50 more"));
+    }
+
+    #[test]
+    fn no_text_makes_the_reader_panic() {
+        let mut refused = 0;
+        let mut attempt = |source: &str| {
+            refused += usize::from(read(source).is_err_and(|error| !error.to_string().is_empty()))
+        };
+        for (at, found) in EXAMPLE.char_indices() {
+            let (head, tail) = (&EXAMPLE[..at], &EXAMPLE[at + found.len_utf8()..]);
+            attempt(head);
+            for put in ["", "[", "}", "=", "\"", "é", "\n", "-9", ".", "\0"] {
+                attempt(&format!("{head}{put}{tail}"));
+            }
+        }
+        attempt(&format!("version = {}", "[".repeat(100_000)));
+        attempt(&format!("version = {}", "{a=".repeat(100_000)));
+        attempt(&format!("{} = 1", vec!["a"; 10_000].join(".")));
+        assert!(refused > 1000);
     }
 
     #[test]

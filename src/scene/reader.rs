@@ -12,7 +12,9 @@ use super::check;
 use super::fields::{self, Need, Visit};
 use super::mesh::{self, Mesh};
 use super::problem::{Mistake, Span, suggestion};
-use super::slot::{Names, Slot, bare_or_quoted, describe, quoted};
+use super::slot::Slot;
+use super::toml_text::{bare_or_quoted, quoted};
+use super::value::{Names, describe};
 use super::write;
 
 /// The only version of the scene format.

@@ -3,7 +3,9 @@
 use std::collections::HashMap;
 
 use super::fields::{self, LISTS, Need, Visit};
-use super::slot::{Names, Slot, bare_or_quoted};
+use super::slot::Slot;
+use super::toml_text::bare_or_quoted;
+use super::value::Names;
 use super::{Light, Material, Scene, Shape, Solid};
 
 /// The scene as TOML: what differs from the defaults, in a fixed order.
