@@ -1,1 +1,287 @@
 //! The fields of every part of a scene, listed once: names, ranges, and who may visit them.
+
+use super::range::Range;
+use super::slot::Slot;
+use super::{
+    Background, Camera, Lens, Light, LightPlace, Material, Paint, Picture, Placement, Scene, Shape,
+    Solid, Trace,
+};
+
+/// Light, colours, and the coefficients of the local shading.
+pub const COEFFICIENT: Range = Range::closed(0.0, 1e6);
+/// Weights of the reflected and the refracted ray.
+pub const WEIGHT: Range = Range::closed(0.0, 10.0);
+/// A share of one.
+pub const SHARE: Range = Range::closed(0.0, 1.0);
+/// Positions, directions and angles.
+pub const COORDINATE: Range = Range::closed(-1e12, 1e12);
+/// Radii, sides and scales.
+pub const LENGTH: Range = Range::above(0.0, 1e12);
+
+/// The tables that hold named things.
+pub const LISTS: [&str; 3] = ["lights", "materials", "solids"];
+/// Keys of [`Lens`].
+pub const LENSES: &[&str] = &["fov_degrees", "height"];
+/// Keys of [`LightPlace`].
+pub const PLACES: &[&str] = &["point", "direction"];
+/// Keys of [`Paint`].
+pub const PAINTS: &[&str] = &["color", "texture"];
+/// Keys of the patterns in a `texture`.
+pub const TEXTURES: &[&str] = &["checker"];
+/// Keys of [`Shape`].
+pub const SHAPES: &[&str] = &["sphere", "plane", "box", "polygon", "mesh", "knot", "sphereflake"];
+
+/// Whether a key must stand in the scene file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Need {
+    /// It has a default.
+    Optional,
+    /// It has none.
+    Required,
+    /// Exactly one of these keys must be there.
+    OneOf(&'static [&'static str]),
+    /// At most one of these keys may be there; the first has a default.
+    EitherOf(&'static [&'static str]),
+}
+
+impl Need {
+    /// Whether the key must be written even if its value is the default.
+    pub fn must_be_written(self) -> bool {
+        matches!(self, Need::Required | Need::OneOf(_))
+    }
+}
+
+/// Something that is shown every field in turn: a reader, a writer, a list of parameters.
+///
+/// Visitors get `&mut`; one that only looks visits a clone (meshes are shared, so clones are cheap).
+pub trait Visit {
+    /// A value with its key.
+    fn leaf(&mut self, key: &'static str, need: Need, slot: Slot<'_>);
+
+    /// A table with its key; `body` visits what is inside, and may be called more than once.
+    fn group(&mut self, key: &str, need: Need, body: &mut dyn FnMut(&mut dyn Visit));
+}
+
+/// Visits a whole scene in the order in which it is written.
+pub fn scene(scene: &mut Scene, v: &mut dyn Visit) {
+    let Scene { ambient_light, picture, camera, background, trace, lights, materials, solids } =
+        scene;
+    v.leaf("ambient_light", Need::Optional, Slot::Coefficient(ambient_light, COEFFICIENT));
+    v.group("camera", Need::Optional, &mut |v| self::camera(camera, v));
+    v.group("picture", Need::Optional, &mut |v| self::picture(picture, v));
+    v.group("trace", Need::Optional, &mut |v| self::trace(trace, v));
+    v.group("background", Need::Optional, &mut |v| self::background(background, v));
+    v.group("lights", Need::Optional, &mut |v| {
+        for item in lights.iter_mut() {
+            v.group(&item.name.clone(), Need::Optional, &mut |v| light(item, v));
+        }
+    });
+    v.group("materials", Need::Optional, &mut |v| {
+        for item in materials.iter_mut() {
+            v.group(&item.name.clone(), Need::Optional, &mut |v| material(item, v));
+        }
+    });
+    v.group("solids", Need::Optional, &mut |v| {
+        for item in solids.iter_mut() {
+            v.group(&item.name.clone(), Need::Optional, &mut |v| solid(item, v));
+        }
+    });
+}
+
+/// Visits `[camera]`.
+pub fn camera(camera: &mut Camera, v: &mut dyn Visit) {
+    let Camera { eye, target, up, lens } = camera;
+    v.leaf("eye", Need::Optional, Slot::Vector(eye, COORDINATE));
+    v.leaf("target", Need::Optional, Slot::Vector(target, COORDINATE));
+    v.leaf("up", Need::Optional, Slot::Vector(up, COORDINATE));
+    let need = Need::EitherOf(LENSES);
+    match lens {
+        Lens::Perspective { fov_degrees } => {
+            v.leaf("fov_degrees", need, Slot::Number(fov_degrees, Range::between(0.0, 180.0)));
+        }
+        Lens::Parallel { height } => v.leaf("height", need, Slot::Number(height, LENGTH)),
+    }
+}
+
+/// Visits `[picture]`.
+pub fn picture(picture: &mut Picture, v: &mut dyn Visit) {
+    let Picture { size, exposure } = picture;
+    let side = Range::closed(1.0, super::MAX_SIDE as f64);
+    v.leaf("size", Need::Optional, Slot::Pair(size, side));
+    v.leaf("exposure", Need::Optional, Slot::Single(exposure, Range::closed(-30.0, 30.0)));
+}
+
+/// Visits `[trace]`.
+pub fn trace(trace: &mut Trace, v: &mut dyn Visit) {
+    let Trace { samples, depth, cutoff } = trace;
+    v.leaf("samples", Need::Optional, Slot::Whole(samples, Range::closed(1.0, 4096.0)));
+    v.leaf("depth", Need::Optional, Slot::Whole(depth, Range::closed(0.0, 64.0)));
+    v.leaf("cutoff", Need::Optional, Slot::Single(cutoff, SHARE));
+}
+
+/// Visits `[background]`.
+pub fn background(background: &mut Background, v: &mut dyn Visit) {
+    let Background { color } = background;
+    v.leaf("color", Need::Optional, Slot::Coefficient(color, COEFFICIENT));
+}
+
+/// Visits `[lights.NAME]`.
+pub fn light(light: &mut Light, v: &mut dyn Visit) {
+    let Light { name: _, color, intensity, on, place } = light;
+    let need = Need::OneOf(PLACES);
+    match place {
+        LightPlace::Point(point) => v.leaf("point", need, Slot::Vector(point, COORDINATE)),
+        LightPlace::Direction(along) => v.leaf("direction", need, Slot::Vector(along, COORDINATE)),
+    }
+    v.leaf("color", Need::Optional, Slot::Coefficient(color, COEFFICIENT));
+    v.leaf("intensity", Need::Optional, Slot::Coefficient(intensity, COEFFICIENT));
+    v.leaf("on", Need::Optional, Slot::Flag(on));
+}
+
+/// Visits `[materials.NAME]`.
+pub fn material(material: &mut Material, v: &mut dyn Visit) {
+    let Material {
+        name: _,
+        paint,
+        kloc,
+        ambient,
+        diffuse,
+        specular,
+        shininess,
+        metallic,
+        emission,
+        reflect,
+        transmit,
+        filter,
+        ior,
+    } = material;
+    self::paint(paint, v);
+    v.leaf("kloc", Need::Optional, Slot::Coefficient(kloc, COEFFICIENT));
+    v.leaf("ambient", Need::Optional, Slot::Coefficient(ambient, COEFFICIENT));
+    v.leaf("diffuse", Need::Optional, Slot::Coefficient(diffuse, COEFFICIENT));
+    v.leaf("specular", Need::Optional, Slot::Coefficient(specular, COEFFICIENT));
+    v.leaf("shininess", Need::Optional, Slot::Single(shininess, Range::closed(0.0, 1e6)));
+    v.leaf("metallic", Need::Optional, Slot::Single(metallic, SHARE));
+    v.leaf("emission", Need::Optional, Slot::Coefficient(emission, COEFFICIENT));
+    v.leaf("reflect", Need::Optional, Slot::Coefficient(reflect, WEIGHT));
+    v.leaf("transmit", Need::Optional, Slot::Coefficient(transmit, WEIGHT));
+    v.leaf("filter", Need::Optional, Slot::Coefficient(filter, COEFFICIENT));
+    v.leaf("ior", Need::Optional, Slot::Number(ior, Range::closed(0.1, 10.0)));
+}
+
+/// Visits `color` or `texture`.
+pub fn paint(paint: &mut Paint, v: &mut dyn Visit) {
+    let need = Need::EitherOf(PAINTS);
+    match paint {
+        Paint::Solid(color) => v.leaf("color", need, Slot::Coefficient(color, COEFFICIENT)),
+        Paint::Checker { a, b, size } => v.group("texture", need, &mut |v| {
+            v.group("checker", Need::OneOf(TEXTURES), &mut |v| {
+                v.leaf("a", Need::Required, Slot::Coefficient(a, COEFFICIENT));
+                v.leaf("b", Need::Required, Slot::Coefficient(b, COEFFICIENT));
+                v.leaf("size", Need::Required, Slot::Number(size, LENGTH));
+            });
+        }),
+    }
+}
+
+/// Visits `[solids.NAME]`.
+pub fn solid(solid: &mut Solid, v: &mut dyn Visit) {
+    let Solid { name: _, shape, material, placement } = solid;
+    let key = shape_key(shape);
+    v.group(key, Need::OneOf(SHAPES), &mut |v| self::shape(shape, v));
+    v.leaf("material", Need::Required, Slot::Material(material));
+    self::placement(placement, v);
+}
+
+/// Visits the keys of a solid that place it.
+pub fn placement(placement: &mut Placement, v: &mut dyn Visit) {
+    let Placement { translate, rotate_degrees, scale } = placement;
+    v.leaf("rotate_degrees", Need::Optional, Slot::Vector(rotate_degrees, COORDINATE));
+    v.leaf("translate", Need::Optional, Slot::Vector(translate, COORDINATE));
+    v.leaf("scale", Need::Optional, Slot::Scale(scale, LENGTH));
+}
+
+/// The key of a shape in its solid.
+pub fn shape_key(shape: &Shape) -> &'static str {
+    match shape {
+        Shape::Sphere { .. } => "sphere",
+        Shape::Plane { .. } => "plane",
+        Shape::Box { .. } => "box",
+        Shape::Polygon { .. } => "polygon",
+        Shape::Mesh { .. } => "mesh",
+        Shape::Knot { .. } => "knot",
+        Shape::Sphereflake { .. } => "sphereflake",
+    }
+}
+
+/// Visits what stands in the table of a shape.
+pub fn shape(shape: &mut Shape, v: &mut dyn Visit) {
+    let need = Need::Required;
+    match shape {
+        Shape::Sphere { center, radius } => {
+            v.leaf("center", need, Slot::Vector(center, COORDINATE));
+            v.leaf("radius", need, Slot::Number(radius, LENGTH));
+        }
+        Shape::Plane { normal, offset } => {
+            v.leaf("normal", need, Slot::Vector(normal, COORDINATE));
+            v.leaf("offset", need, Slot::Number(offset, COORDINATE));
+        }
+        Shape::Box { min, max } => {
+            v.leaf("min", need, Slot::Vector(min, COORDINATE));
+            v.leaf("max", need, Slot::Vector(max, COORDINATE));
+        }
+        Shape::Polygon { points } => v.leaf("points", need, Slot::Points(points, COORDINATE)),
+        Shape::Mesh { file, mesh } => v.leaf("file", need, Slot::Mesh { file, mesh }),
+        Shape::Knot { turns, tube, segments } => {
+            v.leaf("turns", need, Slot::Pair(turns, Range::closed(1.0, 1000.0)));
+            v.leaf("tube", need, Slot::Number(tube, LENGTH));
+            v.leaf("segments", need, Slot::Pair(segments, Range::closed(3.0, 65_536.0)));
+        }
+        Shape::Sphereflake { center, radius, levels } => {
+            v.leaf("center", need, Slot::Vector(center, COORDINATE));
+            v.leaf("radius", need, Slot::Number(radius, LENGTH));
+            v.leaf("levels", need, Slot::Whole(levels, Range::closed(1.0, 6.0)));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_key_of_a_choice_makes_the_variant_with_that_key() {
+        for key in SHAPES {
+            assert_eq!(shape_key(&Shape::named(key)), *key);
+        }
+        let first_key = |visit: &mut dyn FnMut(&mut dyn Visit)| {
+            let mut keys = Keys(Vec::new());
+            visit(&mut keys);
+            keys.0
+        };
+        for key in PAINTS {
+            let keys = first_key(&mut |v| paint(&mut Paint::named(key), v));
+            assert_eq!(keys, [*key]);
+        }
+        for key in LENSES {
+            let mut value = Camera { lens: Lens::named(key), ..Camera::default() };
+            assert!(first_key(&mut |v| camera(&mut value, v)).contains(&key.to_string()));
+        }
+        for key in PLACES {
+            let mut value = Light { place: LightPlace::named(key), ..Light::new("a") };
+            assert!(first_key(&mut |v| light(&mut value, v)).contains(&key.to_string()));
+        }
+    }
+
+    /// Notes the keys of the outermost level.
+    struct Keys(Vec<String>);
+
+    impl Visit for Keys {
+        fn leaf(&mut self, key: &'static str, _: Need, _: Slot<'_>) {
+            self.0.push(key.to_owned());
+        }
+        fn group(&mut self, key: &str, _: Need, _: &mut dyn FnMut(&mut dyn Visit)) {
+            self.0.push(key.to_owned());
+        }
+    }
+}

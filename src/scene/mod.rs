@@ -5,10 +5,21 @@
 //! are decided.
 
 pub mod change;
+pub mod check;
+mod defaults;
+mod direction;
 pub mod factor;
-mod fields;
+pub mod fields;
 pub mod mesh;
+mod obj;
+pub mod path;
+pub mod problem;
+pub mod range;
 pub mod read;
+mod reader;
+pub mod slot;
+mod toml_text;
+pub mod value;
 pub mod write;
 
 use std::sync::Arc;
@@ -55,6 +66,10 @@ pub struct Picture {
 pub const MAX_SIDE: u32 = 65_536;
 /// Largest number of pixels of a picture.
 pub const MAX_PIXELS: u64 = 1 << 28;
+/// Largest number of materials, and of lights.
+pub const MAX_NAMED: usize = 65_535;
+/// Largest number of quadrangles of a knot: segments along times segments around.
+pub const MAX_KNOT_FACES: u64 = 1 << 24;
 
 /// `[camera]`: a right-handed view from `eye` towards `target`.
 #[derive(Clone, Debug, PartialEq)]
@@ -243,11 +258,11 @@ pub enum Shape {
     },
     /// A tube around a (p, q) torus knot, as a closed mesh made when the geometry is compiled.
     Knot {
-        /// Turns around the axis and through the hole, both ≥ 1, coprime.
+        /// Turns around the axis and through the hole, both 1 … 1000, coprime.
         turns: [u32; 2],
         /// Radius of the tube, object units; the knot's own radius is 1.
         tube: f64,
-        /// Segments along and around the tube, ≥ 3.
+        /// Segments along and around the tube, each 3 … 65 536, at most [`MAX_KNOT_FACES`] together.
         segments: [u32; 2],
     },
     /// A sphere carrying nine spheres of a third of its radius, recursively: (9^levels − 1)/8 spheres.

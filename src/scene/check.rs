@@ -1,0 +1,262 @@
+//! Rules that tie several numbers of a scene together: whether every camera, box and polygon makes sense.
+
+use std::collections::HashSet;
+
+use glam::DVec3;
+
+use super::direction::{TINY, unit};
+use super::fields::{self, Need, Visit};
+use super::slot::Slot;
+use super::toml_text::number;
+use super::value::Names;
+use super::{
+    Camera, Light, LightPlace, MAX_KNOT_FACES, MAX_NAMED, MAX_PIXELS, Picture, Scene, Shape, Solid,
+};
+
+/// Sine of the smallest angle between the view and `up`.
+const PARALLEL: f64 = 1e-9;
+/// Largest distance of a polygon's corner from its plane, as a share of the polygon's extent.
+const FLAT: f64 = 1e-9;
+/// Smallest area of a polygon, as a share of the square of its extent.
+const AREA: f64 = 1e-12;
+
+/// Something in a scene that makes no sense.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Flaw {
+    /// The keys that lead to it, from the root of the scene file.
+    pub path: Vec<String>,
+    /// What is wrong, one line.
+    pub message: String,
+    /// A way out, one line.
+    pub help: String,
+}
+
+impl Flaw {
+    fn new(path: &[&str], message: impl Into<String>, help: impl Into<String>) -> Flaw {
+        let path = path.iter().map(|key| (*key).to_owned()).collect();
+        Flaw { path, message: message.into(), help: help.into() }
+    }
+}
+
+/// Everything wrong with a scene, ranges included; empty for every scene that was read from a file.
+pub fn validate(scene: &Scene) -> Vec<Flaw> {
+    let names = Names::of(&scene.materials);
+    let mut ranges =
+        Ranges { path: Vec::new(), names, count: scene.materials.len(), flaws: Vec::new() };
+    fields::scene(&mut scene.clone(), &mut ranges);
+    ranges.flaws.extend(relations(scene));
+    ranges.flaws
+}
+
+/// What is wrong with a scene whose numbers all keep to their ranges.
+pub fn relations(scene: &Scene) -> Vec<Flaw> {
+    let mut flaws = Vec::new();
+    flaws.extend(too_many("lights", scene.lights.iter().map(|light| &light.name)));
+    flaws.extend(too_many("materials", scene.materials.iter().map(|material| &material.name)));
+    flaws.extend(twice("lights", scene.lights.iter().map(|light| &light.name)));
+    flaws.extend(twice("materials", scene.materials.iter().map(|material| &material.name)));
+    flaws.extend(twice("solids", scene.solids.iter().map(|solid| &solid.name)));
+    flaws.extend(camera(&scene.camera));
+    flaws.extend(picture(&scene.picture));
+    flaws.extend(scene.lights.iter().filter_map(light));
+    flaws.extend(scene.solids.iter().filter_map(solid));
+    flaws
+}
+
+fn too_many<'a>(list: &str, mut names: impl Iterator<Item = &'a String>) -> Option<Flaw> {
+    let name = names.nth(MAX_NAMED)?;
+    let message = format!("there are more than {MAX_NAMED} {list}");
+    Some(Flaw::new(&[list, name], message, "let several solids share, or leave some out"))
+}
+
+fn twice<'a>(list: &str, mut names: impl Iterator<Item = &'a String>) -> Option<Flaw> {
+    let mut seen = HashSet::new();
+    let name = names.find(|name| !seen.insert(*name))?;
+    let message = format!("two {list} have the name `{name}`");
+    Some(Flaw::new(&[list, name], message, "rename one of them"))
+}
+
+fn camera(camera: &Camera) -> Option<Flaw> {
+    let Camera { eye, target, up, lens: _ } = camera;
+    let Some(view) = unit(*target - *eye) else {
+        let message = "`target` is where `eye` is: the camera looks nowhere";
+        return Some(Flaw::new(&["camera", "target"], message, "move one of the two"));
+    };
+    let help = if view.cross(DVec3::Z).length() > 0.5 { "[0, 0, 1]" } else { "[0, 1, 0]" };
+    let help = format!("for example `up = {help}`");
+    let Some(up) = unit(*up) else {
+        return Some(Flaw::new(&["camera", "up"], "`up` is zero, which is no direction", help));
+    };
+    let parallel = view.cross(up).length() <= PARALLEL;
+    let message = "`up` is parallel to the view from `eye` to `target`";
+    parallel.then(|| Flaw::new(&["camera", "up"], message, help))
+}
+
+fn picture(picture: &Picture) -> Option<Flaw> {
+    let [width, height] = picture.size.map(u64::from);
+    let message =
+        format!("a picture of {width} × {height} pixels is too large: at most {MAX_PIXELS} pixels");
+    let help = "for example `size = [16384, 16384]`";
+    (width * height > MAX_PIXELS).then(|| Flaw::new(&["picture", "size"], message, help))
+}
+
+fn light(light: &Light) -> Option<Flaw> {
+    let LightPlace::Direction(along) = light.place else { return None };
+    let help = "give the direction in which the light shines, for example `direction = [0, 0, -1]`";
+    let message = "`direction` is zero, which is no direction";
+    unit(along).is_none().then(|| Flaw::new(&["lights", &light.name, "direction"], message, help))
+}
+
+fn solid(solid: &Solid) -> Option<Flaw> {
+    let (key, message, help) = shape(&solid.shape)?;
+    let path = ["solids", &solid.name, fields::shape_key(&solid.shape), key];
+    Some(Flaw::new(&path, message, help))
+}
+
+/// Key, message and way out of what is wrong with a shape.
+fn shape(shape: &Shape) -> Option<(&'static str, String, String)> {
+    match shape {
+        Shape::Plane { normal, .. } => unit(*normal).is_none().then(|| {
+            let help = "give the direction out of the solid, for example `normal = [0, 0, 1]`";
+            ("normal", "`normal` is zero, which is no direction".to_owned(), help.to_owned())
+        }),
+        Shape::Box { min, max } => boxed(*min, *max),
+        Shape::Polygon { points } => {
+            polygon(points).map(|(message, help)| ("points", message, help))
+        }
+        Shape::Knot { turns, tube: _, segments } => knot(*turns, *segments),
+        Shape::Sphere { .. } | Shape::Mesh { .. } | Shape::Sphereflake { .. } => None,
+    }
+}
+
+fn boxed(min: DVec3, max: DVec3) -> Option<(&'static str, String, String)> {
+    let axis = (0..3).find(|&axis| min[axis] >= max[axis])?;
+    let (low, high) = (number(min[axis]), number(max[axis]));
+    let name = ["x", "y", "z"][axis];
+    let message = format!("`max` must exceed `min` on every axis; on {name} it is {high} to {low}");
+    Some(("max", message, "exchange or move the corners".to_owned()))
+}
+
+fn polygon(points: &[DVec3]) -> Option<(String, String)> {
+    let Some((&first, rest)) = points.split_first().filter(|(_, rest)| rest.len() >= 2) else {
+        let message = format!("a polygon needs at least 3 points, this one has {}", points.len());
+        return Some((message, "add points, in order around the edge".to_owned()));
+    };
+    let extent = rest.iter().map(|&p| (p - first).abs().max_element()).fold(0.0, f64::max);
+    let corners: Vec<DVec3> =
+        points.iter().map(|&p| (p - first) / extent.max(f64::MIN_POSITIVE)).collect();
+    // Newell: twice the area, along the normal
+    let turn = |(a, b): (&DVec3, &DVec3)| a.cross(*b);
+    let doubled: DVec3 = corners.iter().zip(corners.iter().cycle().skip(1)).map(turn).sum();
+    if extent < TINY || doubled.length() <= 2.0 * AREA {
+        let help = "move its points apart, in order around the edge";
+        return Some(("the polygon has no area".to_owned(), help.to_owned()));
+    }
+    let normal = doubled.normalize();
+    let off = |corner: &DVec3| corner.dot(normal).abs();
+    let index = (0..corners.len()).find(|&i| off(&corners[i]) > FLAT)?;
+    let distance = number((off(&corners[index]) * extent) as f32);
+    let message =
+        format!("the polygon is not flat: point {} lies {distance} off its plane", index + 1);
+    Some((message, "split it into triangles, or move the point".to_owned()))
+}
+
+fn knot(turns: [u32; 2], segments: [u32; 2]) -> Option<(&'static str, String, String)> {
+    let [p, q] = turns;
+    if common_divisor(p, q) != 1 {
+        let divisor = common_divisor(p, q);
+        let message =
+            format!("`turns` must have no common divisor; {p} and {q} have {divisor} in common");
+        return Some(("turns", message, "for example `turns = [2, 3]`".to_owned()));
+    }
+    let [along, around] = segments.map(u64::from);
+    let message = format!(
+        "a knot of {along} × {around} segments is too large: at most {MAX_KNOT_FACES} together"
+    );
+    let help = "for example `segments = [400, 100]`".to_owned();
+    (along * around > MAX_KNOT_FACES).then_some(("segments", message, help))
+}
+
+fn common_divisor(a: u32, b: u32) -> u32 {
+    if b == 0 { a } else { common_divisor(b, a % b) }
+}
+
+/// Holds every number to its range.
+struct Ranges {
+    path: Vec<String>,
+    names: Names,
+    count: usize,
+    flaws: Vec<Flaw>,
+}
+
+impl Visit for Ranges {
+    fn leaf(&mut self, key: &'static str, _: Need, slot: Slot<'_>) {
+        let dangling = || match &slot {
+            Slot::Material(index) if **index >= self.count => Some((
+                format!("there is no material number {index}"),
+                "choose a material of the scene".to_owned(),
+            )),
+            _ => None,
+        };
+        if let Some((message, help)) = slot.fault(key, &self.names).or_else(dangling) {
+            let mut path = self.path.clone();
+            path.push(key.to_owned());
+            self.flaws.push(Flaw { path, message, help });
+        }
+    }
+
+    fn group(&mut self, key: &str, _: Need, body: &mut dyn FnMut(&mut dyn Visit)) {
+        self.path.push(key.to_owned());
+        body(self);
+        self.path.pop();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::Rgb;
+    use crate::scene::Material;
+
+    #[test]
+    fn the_default_scene_is_valid_and_every_default_shape_too() {
+        let mut scene = Scene { materials: vec![Material::new("m")], ..Scene::default() };
+        for key in fields::SHAPES {
+            scene.solids.push(Solid::new(*key, Shape::named(key), 0));
+        }
+        assert_eq!(validate(&scene), []);
+    }
+
+    #[test]
+    fn validate_finds_ranges_relations_and_dangling_materials() {
+        let mut scene = Scene::default();
+        scene.background.color = Rgb([0.0, -1.0, 0.0]);
+        scene.camera.eye = scene.camera.target;
+        scene.solids.push(Solid::new("ball", Shape::named("sphere"), 3));
+        scene.lights = vec![Light::new("a"), Light::new("b"), Light::new("a")];
+        let flaws = validate(&scene);
+        let paths: Vec<String> = flaws.iter().map(|flaw| flaw.path.join(".")).collect();
+        assert_eq!(
+            paths,
+            ["background.color", "solids.ball.material", "lights.a", "camera.target"]
+        );
+        assert_eq!(flaws[0].message, "`color` is -1, out of its range: 0 to 1e6");
+        assert_eq!(flaws[0].help, "the nearest allowed value is 0");
+    }
+
+    #[test]
+    fn polygons_are_flat_relative_to_their_extent() {
+        let square = |lift: f64, size: f64| {
+            let corners = [[0., 0., 0.], [1., 0., 0.], [1., 1., lift], [0., 1., 0.]];
+            polygon(&corners.map(|c| DVec3::from(c) * size)).map(|(message, _)| message)
+        };
+        for size in [1e-9, 1.0, 1e9] {
+            assert_eq!(square(0.0, size), None);
+            assert_eq!(square(1e-10, size), None);
+            assert!(square(1e-7, size).unwrap().contains("not flat"));
+        }
+        assert_eq!(square(0.0, 0.0).unwrap(), "the polygon has no area");
+        let line = [DVec3::ZERO, DVec3::X, DVec3::X * 2.0];
+        assert_eq!(polygon(&line).unwrap().0, "the polygon has no area");
+    }
+}

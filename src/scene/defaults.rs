@@ -1,0 +1,143 @@
+//! What a scene, a light, a material or a shape is before the user says anything about it.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::Placement;
+use super::mesh::Mesh;
+use super::{
+    Background, Camera, Lens, Light, LightPlace, Material, Paint, Picture, Scene, Shape, Solid,
+    Trace,
+};
+use crate::color::Rgb;
+
+impl Default for Scene {
+    fn default() -> Scene {
+        Scene {
+            ambient_light: Rgb::WHITE,
+            picture: Picture::default(),
+            camera: Camera::default(),
+            background: Background::default(),
+            trace: Trace::default(),
+            lights: Vec::new(),
+            materials: Vec::new(),
+            solids: Vec::new(),
+        }
+    }
+}
+
+impl Default for Picture {
+    fn default() -> Picture {
+        Picture { size: [640, 360], exposure: 0.0 }
+    }
+}
+
+impl Default for Camera {
+    fn default() -> Camera {
+        Camera {
+            eye: DVec3::new(0.0, -6.0, 2.0),
+            target: DVec3::ZERO,
+            up: DVec3::Z,
+            lens: Lens::Perspective { fov_degrees: 45.0 },
+        }
+    }
+}
+
+impl Default for Background {
+    fn default() -> Background {
+        Background { color: Rgb::BLACK }
+    }
+}
+
+impl Default for Trace {
+    fn default() -> Trace {
+        Trace { samples: 16, depth: 10, cutoff: 1.0 / 255.0 }
+    }
+}
+
+impl Light {
+    /// A white point light at the origin.
+    pub fn new(name: impl Into<String>) -> Light {
+        Light {
+            name: name.into(),
+            color: Rgb::WHITE,
+            intensity: Rgb::WHITE,
+            on: true,
+            place: LightPlace::Point(DVec3::ZERO),
+        }
+    }
+}
+
+impl Material {
+    /// White, matt, opaque.
+    pub fn new(name: impl Into<String>) -> Material {
+        Material {
+            name: name.into(),
+            paint: Paint::Solid(Rgb::WHITE),
+            kloc: Rgb::WHITE,
+            ambient: Rgb::grey(0.1),
+            diffuse: Rgb::grey(0.7),
+            specular: Rgb::BLACK,
+            shininess: 32.0,
+            metallic: 0.0,
+            emission: Rgb::BLACK,
+            reflect: Rgb::BLACK,
+            transmit: Rgb::BLACK,
+            filter: Rgb::WHITE,
+            ior: 1.5,
+        }
+    }
+}
+
+impl Solid {
+    /// A shape where it was defined, in the material with this index.
+    pub fn new(name: impl Into<String>, shape: Shape, material: usize) -> Solid {
+        Solid { name: name.into(), shape, material, placement: Placement::default() }
+    }
+}
+
+impl Lens {
+    /// The lens whose key in the scene file is `key`; a perspective for any other word.
+    pub fn named(key: &str) -> Lens {
+        match key {
+            "height" => Lens::Parallel { height: 4.0 },
+            _ => Lens::Perspective { fov_degrees: 45.0 },
+        }
+    }
+}
+
+impl LightPlace {
+    /// The place whose key in the scene file is `key`; a point for any other word.
+    pub fn named(key: &str) -> LightPlace {
+        match key {
+            "direction" => LightPlace::Direction(DVec3::NEG_Z),
+            _ => LightPlace::Point(DVec3::ZERO),
+        }
+    }
+}
+
+impl Paint {
+    /// The paint whose key in the scene file is `key`; one colour for any other word.
+    pub fn named(key: &str) -> Paint {
+        match key {
+            "texture" => Paint::Checker { a: Rgb::WHITE, b: Rgb::BLACK, size: 1.0 },
+            _ => Paint::Solid(Rgb::WHITE),
+        }
+    }
+}
+
+impl Shape {
+    /// The shape whose key in the scene file is `key`, of unit size; a sphere for any other word.
+    pub fn named(key: &str) -> Shape {
+        match key {
+            "plane" => Shape::Plane { normal: DVec3::Z, offset: 0.0 },
+            "box" => Shape::Box { min: DVec3::NEG_ONE, max: DVec3::ONE },
+            "polygon" => Shape::Polygon { points: vec![DVec3::ZERO, DVec3::X, DVec3::Y] },
+            "mesh" => Shape::Mesh { file: "mesh.obj".to_owned(), mesh: Arc::new(Mesh::default()) },
+            "knot" => Shape::Knot { turns: [2, 3], tube: 0.3, segments: [400, 100] },
+            "sphereflake" => Shape::Sphereflake { center: DVec3::ZERO, radius: 1.0, levels: 3 },
+            _ => Shape::Sphere { center: DVec3::ZERO, radius: 1.0 },
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! What a parameter may hold: the kind of its value and the range of its numbers.
+
+use std::fmt;
+
+use super::toml_text::number;
+
+/// The numbers a parameter may hold; NaN and the infinities are never among them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// Whether `low` itself is allowed.
+    pub low_included: bool,
+    /// Whether `high` itself is allowed.
+    pub high_included: bool,
+}
+
+impl Range {
+    /// `low ≤ x ≤ high`.
+    pub const fn closed(low: f64, high: f64) -> Range {
+        Range { low, high, low_included: true, high_included: true }
+    }
+
+    /// `low < x ≤ high`.
+    pub const fn above(low: f64, high: f64) -> Range {
+        Range { low, high, low_included: false, high_included: true }
+    }
+
+    /// `low < x < high`.
+    pub const fn between(low: f64, high: f64) -> Range {
+        Range { low, high, low_included: false, high_included: false }
+    }
+
+    /// Whether `x` may be the value.
+    pub fn contains(&self, x: f64) -> bool {
+        x.is_finite()
+            && (x > self.low || (self.low_included && x == self.low))
+            && (x < self.high || (self.high_included && x == self.high))
+    }
+
+    /// The end of the range that `x` lies beyond, if that end is itself allowed.
+    pub(super) fn nearest_end(&self, x: f64) -> Option<f64> {
+        if x < self.low && self.low_included {
+            Some(self.low)
+        } else if x > self.high && self.high_included {
+            Some(self.high)
+        } else {
+            None
+        }
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let short = |x: f64| if x.abs() >= 1e6 { format!("{x:e}") } else { number(x) };
+        let (low, high) = (short(self.low), short(self.high));
+        match (self.low_included, self.high_included) {
+            (true, true) => write!(f, "{low} to {high}"),
+            (false, true) => write!(f, "above {low} and at most {high}"),
+            (true, false) => write!(f, "at least {low} and below {high}"),
+            (false, false) => write!(f, "above {low} and below {high}"),
+        }
+    }
+}
+
+/// How a value is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A number or `[r, g, b]`.
+    Coefficient,
+    /// A number.
+    Number,
+    /// A whole number.
+    Whole,
+    /// Two whole numbers.
+    Pair,
+    /// `true` or `false`.
+    Flag,
+    /// `[x, y, z]`.
+    Vector,
+    /// A number or `[x, y, z]`.
+    Scale,
+    /// `[[x, y, z], …]`.
+    Points,
+    /// The name of a material.
+    Material,
+    /// The name of a mesh file.
+    File,
+}
+
+impl Kind {
+    /// What must be written, as in "must be …".
+    pub fn expected(self) -> &'static str {
+        match self {
+            Kind::Coefficient => "a number or [r, g, b]",
+            Kind::Number => "a number",
+            Kind::Whole => "a whole number",
+            Kind::Pair => "two whole numbers [a, b]",
+            Kind::Flag => "true or false",
+            Kind::Vector => "three numbers [x, y, z]",
+            Kind::Scale => "a number or [x, y, z]",
+            Kind::Points => "a list of points [[x, y, z], …]",
+            Kind::Material => "the name of a material",
+            Kind::File => "the name of a file",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_say_what_they_hold() {
+        assert_eq!(Range::closed(0.0, 1e6).to_string(), "0 to 1e6");
+        assert_eq!(Range::between(0.0, 180.0).to_string(), "above 0 and below 180");
+        assert!(Range::closed(0.0, 1.0).contains(1.0) && !Range::above(0.0, 1.0).contains(0.0));
+        assert!(!Range::closed(0.0, 1.0).contains(f64::NAN));
+        assert!(!Range::between(0.0, 180.0).contains(180.0));
+    }
+}

@@ -1,0 +1,167 @@
+//! One editable value of a scene: its kind, its range, and how it is read from and written as TOML.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use toml::Spanned;
+use toml::de::DeValue;
+
+use super::mesh::Mesh;
+use super::problem::Mistake;
+use super::range::{Kind, Range};
+use super::toml_text::{number, one_or_three, quoted, vector};
+use super::value::{Names, Target, element};
+use crate::color::Rgb;
+
+/// A place in a scene that holds a value.
+#[derive(Debug)]
+pub enum Slot<'a> {
+    /// One number per channel.
+    Coefficient(&'a mut Rgb, Range),
+    /// One number of the shading.
+    Single(&'a mut f32, Range),
+    /// One number of the geometry.
+    Number(&'a mut f64, Range),
+    /// A count.
+    Whole(&'a mut u32, Range),
+    /// Two counts.
+    Pair(&'a mut [u32; 2], Range),
+    /// A switch.
+    Flag(&'a mut bool),
+    /// A point or direction.
+    Vector(&'a mut DVec3, Range),
+    /// A factor per axis.
+    Scale(&'a mut DVec3, Range),
+    /// A list of points.
+    Points(&'a mut Vec<DVec3>, Range),
+    /// Index of a material, written as its name.
+    Material(&'a mut usize),
+    /// A mesh file and what it held when it was read.
+    Mesh {
+        /// As written in the scene.
+        file: &'a mut String,
+        /// What the file held.
+        mesh: &'a mut Arc<Mesh>,
+    },
+}
+
+impl Slot<'_> {
+    /// How the value is written.
+    pub fn kind(&self) -> Kind {
+        match self {
+            Slot::Coefficient(..) => Kind::Coefficient,
+            Slot::Single(..) | Slot::Number(..) => Kind::Number,
+            Slot::Whole(..) => Kind::Whole,
+            Slot::Pair(..) => Kind::Pair,
+            Slot::Flag(_) => Kind::Flag,
+            Slot::Vector(..) => Kind::Vector,
+            Slot::Scale(..) => Kind::Scale,
+            Slot::Points(..) => Kind::Points,
+            Slot::Material(_) => Kind::Material,
+            Slot::Mesh { .. } => Kind::File,
+        }
+    }
+
+    /// What every number of the value must keep to; `None` if it is not made of numbers.
+    pub fn range(&self) -> Option<Range> {
+        match self {
+            Slot::Coefficient(_, range)
+            | Slot::Single(_, range)
+            | Slot::Number(_, range)
+            | Slot::Whole(_, range)
+            | Slot::Pair(_, range)
+            | Slot::Vector(_, range)
+            | Slot::Scale(_, range)
+            | Slot::Points(_, range) => Some(*range),
+            Slot::Flag(_) | Slot::Material(_) | Slot::Mesh { .. } => None,
+        }
+    }
+
+    /// The value as TOML, which reads back as the same bits.
+    pub fn text(&self, names: &Names) -> String {
+        match self {
+            Slot::Coefficient(Rgb(channels), _) => {
+                one_or_three(*channels, channels.map(f32::to_bits))
+            }
+            Slot::Single(x, _) => number(**x),
+            Slot::Number(x, _) => number(**x),
+            Slot::Whole(n, _) => n.to_string(),
+            Slot::Pair([a, b], _) => format!("[{a}, {b}]"),
+            Slot::Flag(on) => on.to_string(),
+            Slot::Vector(v, _) => vector(v),
+            Slot::Scale(v, _) => one_or_three(v.to_array(), v.to_array().map(f64::to_bits)),
+            Slot::Points(points, _) => {
+                format!("[{}]", points.iter().map(vector).collect::<Vec<_>>().join(", "))
+            }
+            Slot::Material(index) => {
+                quoted(names.list.get(**index).map_or("NAME", |name| name.as_str()))
+            }
+            Slot::Mesh { file, .. } => quoted(file),
+        }
+    }
+
+    /// Writes a TOML value into the slot. After an error the slot may hold a value out of range.
+    pub fn assign(
+        &mut self,
+        key: &str,
+        value: &Spanned<DeValue<'_>>,
+        names: &Names,
+    ) -> Result<(), Mistake> {
+        let example = self.text(names);
+        let target = Target { key, kind: self.kind(), range: self.range(), example };
+        match self {
+            Slot::Coefficient(rgb, _) => **rgb = Rgb(target.one_or_three(value)?),
+            Slot::Single(x, _) => **x = target.float(value)?,
+            Slot::Number(x, _) => **x = target.float(value)?,
+            Slot::Whole(n, _) => **n = target.whole(value)?,
+            Slot::Pair(pair, _) => **pair = target.pair(value)?,
+            Slot::Flag(on) => {
+                **on = value.get_ref().as_bool().ok_or_else(|| target.wrong_type(value))?;
+            }
+            Slot::Vector(v, _) => **v = DVec3::from(target.three(value)?),
+            Slot::Scale(v, _) => **v = DVec3::from(target.one_or_three(value)?),
+            Slot::Points(points, _) => **points = target.points(value)?,
+            Slot::Material(index) => **index = target.material(value, names)?,
+            Slot::Mesh { .. } => return Err(target.fixed(value)),
+        }
+        match self.first_outside() {
+            Some((index, x)) => Err(target.out_of_range(element(value, index), x, self.show(x))),
+            None => Ok(()),
+        }
+    }
+
+    /// What is wrong with the present value by its range alone, with a way out.
+    pub fn fault(&self, key: &str, names: &Names) -> Option<(String, String)> {
+        let (_, x) = self.first_outside()?;
+        let target =
+            Target { key, kind: self.kind(), range: self.range(), example: self.text(names) };
+        Some(target.outside(x, self.show(x)))
+    }
+
+    /// The first number out of range, with its index among all numbers of the slot.
+    fn first_outside(&self) -> Option<(usize, f64)> {
+        let range = self.range()?;
+        let bad = |(_, x): &(usize, f64)| !range.contains(*x);
+        let three = |v: &DVec3| v.to_array().into_iter().enumerate().find(bad);
+        match self {
+            Slot::Coefficient(rgb, _) => rgb.0.map(f64::from).into_iter().enumerate().find(bad),
+            Slot::Single(x, _) => Some((0, f64::from(**x))).filter(bad),
+            Slot::Number(x, _) => Some((0, **x)).filter(bad),
+            Slot::Whole(n, _) => Some((0, f64::from(**n))).filter(bad),
+            Slot::Pair(pair, _) => pair.map(f64::from).into_iter().enumerate().find(bad),
+            Slot::Vector(v, _) | Slot::Scale(v, _) => three(v),
+            Slot::Points(points, _) => {
+                points.iter().flat_map(DVec3::to_array).enumerate().find(bad)
+            }
+            Slot::Flag(_) | Slot::Material(_) | Slot::Mesh { .. } => None,
+        }
+    }
+
+    /// A number of this slot in its own precision.
+    fn show(&self, x: f64) -> String {
+        match self {
+            Slot::Coefficient(..) | Slot::Single(..) => number(x as f32),
+            _ => number(x),
+        }
+    }
+}
