@@ -133,7 +133,8 @@ fn boxed(min: DVec3, max: DVec3) -> Option<(&'static str, String, String)> {
     let axis = (0..3).find(|&axis| min[axis] >= max[axis])?;
     let (low, high) = (number(min[axis]), number(max[axis]));
     let name = ["x", "y", "z"][axis];
-    let message = format!("`max` must exceed `min` on every axis; on {name} it is {high} to {low}");
+    let message =
+        format!("`max` must exceed `min` on every axis; on {name} they are {high} and {low}");
     Some(("max", message, "exchange or move the corners".to_owned()))
 }
 

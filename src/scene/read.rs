@@ -307,7 +307,7 @@ mod tests {
             ),
             (
                 "box = { min = [0, 0, 0], max = [1, 0, 1] }",
-                "`max` must exceed `min` on every axis; on y it is 0 to 0",
+                "`max` must exceed `min` on every axis; on y they are 0 and 0",
             ),
             (
                 "box = { min = [0, 0, 0], max = [1, 1, 1] }\nplane = { normal = [0, 0, 1], offset = 1 }",
