@@ -1,2 +1,157 @@
 //! The scene made ready for rays: primitives in world space, their hierarchy, and the two questions
 //! asked of them, `closest_hit` and `occluded`.
+//!
+//! Every hit is decided in f64 from the original numbers; the hierarchy only leaves out what cannot
+//! be hit. The answers therefore do not depend on the tree, the SIMD width or the machine. There is
+//! no epsilon with a length in it: a ray that leaves a surface knows which one ([`Leaving`]).
+
+mod binary;
+mod compile;
+mod generate;
+mod hierarchy;
+mod interaction;
+mod packet;
+mod placement;
+mod primitive;
+mod query;
+mod shear;
+#[cfg(test)]
+mod tests;
+#[cfg(test)]
+mod tests_acne;
+mod traverse;
+
+use fearless_simd::Simd;
+use glam::DVec3;
+
+use crate::progress::{Cancelled, Progress};
+use crate::scene::Scene;
+use compile::Primitives;
+use hierarchy::Hierarchy;
+pub use hierarchy::Stack;
+use query::{Closest, Shadow};
+
+/// A half-line in world space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where it starts.
+    pub origin: DVec3,
+    /// Where it goes, of unit length.
+    pub direction: DVec3,
+}
+
+/// The first primitive a ray meets; [`Geometry::interaction`] tells the rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Distance along the ray, > 0.
+    pub t: f64,
+    /// The primitive's number, below [`Geometry::primitives`].
+    pub primitive: u32,
+}
+
+/// The surface a ray starts on, which it must not meet again by rounding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Leaving {
+    /// The primitive it starts on.
+    pub primitive: u32,
+    /// Whether it goes to the inner side of the geometric normal.
+    pub inside: bool,
+}
+
+/// The surface at a hit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interaction {
+    /// The hit point, moved onto the surface: coordinates that the surface holds constant are exact.
+    pub point: DVec3,
+    /// Unit, out of the solid; of a surface without thickness, the side it is counter-clockwise from.
+    pub geometric_normal: DVec3,
+    /// Unit, on the side of the geometric normal: a mesh's smooth normal if it has one.
+    pub shading_normal: DVec3,
+    /// Index into `Scene::solids`.
+    pub solid: u32,
+    /// Index into `Scene::materials`.
+    pub material: u16,
+    /// Slot of the material's paint.
+    pub slot: u8,
+    /// Whether the surface has no thickness and does not refract.
+    pub thin: bool,
+    /// The primitive's number.
+    pub primitive: u32,
+}
+
+/// The compiled scene.
+#[derive(Debug)]
+pub struct Geometry {
+    primitives: Primitives,
+    hierarchy: Hierarchy,
+}
+
+impl Geometry {
+    /// Compiles a scene. A cancel is obeyed within 100 ms.
+    pub fn build(scene: &Scene, progress: &Progress) -> Result<Geometry, Cancelled> {
+        let primitives = Primitives::compile(scene, progress)?;
+        let hierarchy = Hierarchy::build(&primitives, progress)?;
+        Ok(Geometry { primitives, hierarchy })
+    }
+
+    /// The hit with the smallest `t > 0`; of equal ones, that of the lowest primitive.
+    #[inline(always)]
+    pub fn closest_hit<S: Simd>(
+        &self,
+        simd: S,
+        stack: &mut Stack,
+        ray: &Ray,
+        leaving: Option<Leaving>,
+    ) -> Option<Hit> {
+        let mut query = Closest::new();
+        self.traverse(simd, stack, ray, leaving, &mut query);
+        query.hit()
+    }
+
+    /// What stands between the ray's origin and a light at `0 < t < t_max`.
+    ///
+    /// Returns the material of an opaque surface if there is one (`opaque` is indexed by material).
+    /// Otherwise `crossed` holds the material of every transparent surface crossing, in no
+    /// particular order; it is cleared first.
+    #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "the hot path's scratch is passed in, not boxed")]
+    pub fn occluded<S: Simd>(
+        &self,
+        simd: S,
+        stack: &mut Stack,
+        ray: &Ray,
+        t_max: f64,
+        leaving: Option<Leaving>,
+        opaque: &[bool],
+        crossed: &mut Vec<u16>,
+    ) -> Option<u16> {
+        crossed.clear();
+        let mut query = Shadow::new(&self.primitives, t_max, opaque, crossed);
+        self.traverse(simd, stack, ray, leaving, &mut query);
+        query.blocker()
+    }
+
+    /// A ray from the interaction's point towards the unit vector `direction`, with what the queries
+    /// need in order not to meet the same surface again.
+    #[inline(always)]
+    pub fn spawn(&self, at: &Interaction, direction: DVec3) -> (Ray, Leaving) {
+        let inside = direction.dot(at.geometric_normal) < 0.0;
+        (Ray { origin: at.point, direction }, Leaving { primitive: at.primitive, inside })
+    }
+
+    /// How many primitives there are.
+    pub fn primitives(&self) -> usize {
+        self.primitives.count()
+    }
+
+    /// Memory held, in bytes.
+    pub fn bytes(&self) -> usize {
+        self.primitives.bytes() + self.hierarchy.bytes()
+    }
+
+    /// Lowest and highest corner of a box around everything but the infinite planes; `None` if there
+    /// is nothing else.
+    pub fn bounds(&self) -> Option<[DVec3; 2]> {
+        self.hierarchy.bounds()
+    }
+}

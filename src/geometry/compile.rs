@@ -1,0 +1,327 @@
+//! From solids to primitives: placements applied, generated solids expanded, meshes joined.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::generate;
+use super::placement::Placed;
+use super::primitive::{Form, Plane, Shape as OtherShape, Sphere};
+use super::shear::{Corner, corner};
+use crate::progress::{Cancelled, Progress};
+use crate::scene::mesh::Mesh;
+use crate::scene::{Paint, Scene, Shape, Solid};
+
+/// Elements handled between two looks at the cancel flag.
+const CHECK_EVERY: usize = 1 << 14;
+
+/// Marks a triangle without smooth normals.
+pub(super) const NO_NORMAL: u32 = u32::MAX;
+
+/// Which list a primitive is in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Kind {
+    /// `Primitives::spheres`.
+    Sphere,
+    /// `Primitives::triangles`.
+    Triangle,
+    /// `Primitives::shapes`.
+    Shape,
+    /// `Primitives::planes`, outside the hierarchy.
+    Plane,
+}
+
+/// Where a primitive is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Item {
+    /// Which list.
+    pub(super) kind: Kind,
+    /// Which element.
+    pub(super) index: u32,
+}
+
+/// A triangle of a mesh.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Triangle {
+    /// Into `Primitives::corners`, counter-clockwise seen from outside.
+    pub(super) corners: [u32; 3],
+    /// Its number among all primitives.
+    pub(super) primitive: u32,
+}
+
+/// A solid of the scene: a run of primitives of one kind.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Compiled {
+    /// Number of its first primitive.
+    pub(super) first: u32,
+    /// How many it has.
+    pub(super) count: u32,
+    /// Where the first one is found; the others follow.
+    pub(super) item: Item,
+    /// Index into `Scene::materials`.
+    pub(super) material: u16,
+    /// Whether it has no inside: a polygon, a mesh that is not closed.
+    pub(super) thin: bool,
+}
+
+/// All primitives, numbered in the order of the solids.
+#[derive(Debug, Default)]
+pub(super) struct Primitives {
+    pub(super) spheres: Vec<Sphere>,
+    pub(super) planes: Vec<Plane>,
+    pub(super) shapes: Vec<OtherShape>,
+    pub(super) triangles: Vec<Triangle>,
+    /// Three per triangle, into `normals`.
+    pub(super) triangle_normals: Vec<[u32; 3]>,
+    pub(super) corners: Vec<Corner>,
+    pub(super) normals: Vec<DVec3>,
+    pub(super) solids: Vec<Compiled>,
+    /// The solid of each primitive.
+    pub(super) solid_of: Vec<u32>,
+    /// Per material: the side of its checker cubes; `None` for a plain one.
+    pub(super) checker_sizes: Vec<Option<f64>>,
+}
+
+impl Primitives {
+    /// Expands every solid of the scene.
+    pub(super) fn compile(scene: &Scene, progress: &Progress) -> Result<Primitives, Cancelled> {
+        let mut all = Primitives::default();
+        for material in &scene.materials {
+            all.checker_sizes.push(match material.paint {
+                Paint::Solid(_) => None,
+                Paint::Checker { a: _, b: _, size } => Some(size),
+            });
+        }
+        for solid in &scene.solids {
+            progress.check()?;
+            all.add(solid, progress)?;
+        }
+        Ok(all)
+    }
+
+    /// How many primitives there are.
+    pub(super) fn count(&self) -> usize {
+        self.solid_of.len()
+    }
+
+    /// The solid that a primitive belongs to.
+    #[inline(always)]
+    pub(super) fn solid(&self, primitive: u32) -> &Compiled {
+        &self.solids[self.solid_of[primitive as usize] as usize]
+    }
+
+    /// The corners of a triangle.
+    #[inline(always)]
+    pub(super) fn triangle_corners(&self, triangle: &Triangle) -> [&Corner; 3] {
+        triangle.corners.map(|v| &self.corners[v as usize])
+    }
+
+    /// Memory held, in bytes.
+    pub(super) fn bytes(&self) -> usize {
+        let polygons = self.shapes.iter().map(|shape| match &shape.form {
+            Form::Polygon(corners, _) => size_of_val(&**corners),
+            Form::Cuboid(_) => 0,
+            Form::PlacedCuboid(placed, _) | Form::Ellipsoid(placed, _, _) => size_of_val(&**placed),
+        });
+        size_of_val(&*self.spheres)
+            + size_of_val(&*self.planes)
+            + size_of_val(&*self.shapes)
+            + polygons.sum::<usize>()
+            + size_of_val(&*self.triangles)
+            + size_of_val(&*self.triangle_normals)
+            + size_of_val(&*self.corners)
+            + size_of_val(&*self.normals)
+            + size_of_val(&*self.solids)
+            + size_of_val(&*self.solid_of)
+    }
+
+    fn add(&mut self, solid: &Solid, progress: &Progress) -> Result<(), Cancelled> {
+        let first = self.count() as u32;
+        let placed = Placed::new(&solid.placement);
+        let (item, thin) = match &solid.shape {
+            Shape::Sphere { center, radius } => self.sphere(&placed, *center, *radius),
+            Shape::Plane { normal, offset } => self.plane(&placed, *normal, *offset),
+            Shape::Box { min, max } => self.cuboid(&placed, [*min, *max]),
+            Shape::Polygon { points } => self.polygon(&placed, points),
+            Shape::Mesh { file: _, mesh } => self.mesh(&placed, mesh, progress)?,
+            Shape::Knot { turns, tube, segments } => {
+                let mesh = Arc::new(generate::knot(*turns, *tube, *segments));
+                self.mesh(&placed, &mesh, progress)?
+            }
+            Shape::Sphereflake { center, radius, levels } => {
+                self.sphereflake(&placed, generate::sphereflake(*center, *radius, *levels))
+            }
+        };
+        let count = self.count_of(item.kind) as u32 - item.index;
+        let material = u16::try_from(solid.material).expect("fewer than 65536 materials");
+        self.solid_of.resize((first + count) as usize, self.solids.len() as u32);
+        self.solids.push(Compiled { first, count, item, material, thin });
+        Ok(())
+    }
+
+    fn count_of(&self, kind: Kind) -> usize {
+        match kind {
+            Kind::Sphere => self.spheres.len(),
+            Kind::Triangle => self.triangles.len(),
+            Kind::Shape => self.shapes.len(),
+            Kind::Plane => self.planes.len(),
+        }
+    }
+
+    /// The next free place of a kind.
+    fn next(&self, kind: Kind) -> Item {
+        Item { kind, index: self.count_of(kind) as u32 }
+    }
+
+    fn sphere(&mut self, placed: &Placed, center: DVec3, radius: f64) -> (Item, bool) {
+        self.sphereflake(placed, vec![(center, radius)])
+    }
+
+    fn sphereflake(&mut self, placed: &Placed, spheres: Vec<(DVec3, f64)>) -> (Item, bool) {
+        let first = self.count() as u32;
+        let numbered = spheres.into_iter().zip(first..);
+        let Some(scale) = placed.similarity() else {
+            let item = self.next(Kind::Shape);
+            self.shapes.extend(numbered.map(|((center, radius), primitive)| {
+                let form = Form::Ellipsoid(Box::new(*placed), center, radius);
+                OtherShape { form, primitive }
+            }));
+            return (item, false);
+        };
+        let item = self.next(Kind::Sphere);
+        self.spheres.extend(numbered.map(|((center, radius), primitive)| Sphere {
+            center: placed.point(center),
+            radius: radius * scale,
+            primitive,
+        }));
+        (item, false)
+    }
+
+    fn plane(&mut self, placed: &Placed, normal: DVec3, offset: f64) -> (Item, bool) {
+        let item = self.next(Kind::Plane);
+        let unit = exact_normalize(normal);
+        let point = placed.point(unit * offset);
+        let normal = exact_normalize(placed.normal(unit));
+        let plane = Plane { normal, offset: normal.dot(point), primitive: self.count() as u32 };
+        self.planes.push(plane);
+        (item, false)
+    }
+
+    fn cuboid(&mut self, placed: &Placed, corners: [DVec3; 2]) -> (Item, bool) {
+        let item = self.next(Kind::Shape);
+        let form = if placed.keeps_axes() {
+            let [a, b] = corners.map(|c| placed.point(c));
+            Form::Cuboid([a.min(b), a.max(b)])
+        } else {
+            Form::PlacedCuboid(Box::new(*placed), corners)
+        };
+        self.shapes.push(OtherShape { form, primitive: self.count() as u32 });
+        (item, false)
+    }
+
+    fn polygon(&mut self, placed: &Placed, points: &[DVec3]) -> (Item, bool) {
+        let item = self.next(Kind::Shape);
+        let points: Vec<DVec3> = points.iter().map(|p| placed.point(*p)).collect();
+        let normal = exact_normalize(newell_normal(&points));
+        let corners = points.into_iter().map(corner).collect();
+        let form = Form::Polygon(corners, normal);
+        self.shapes.push(OtherShape { form, primitive: self.count() as u32 });
+        (item, true)
+    }
+
+    fn mesh(
+        &mut self,
+        placed: &Placed,
+        mesh: &Mesh,
+        progress: &Progress,
+    ) -> Result<(Item, bool), Cancelled> {
+        let item = self.next(Kind::Triangle);
+        let (first, corner_base) = (self.count() as u32, self.corners.len() as u32);
+        let normal_base = self.normals.len() as u32;
+        let closed = is_closed(&mesh.triangles, progress)?;
+        // A closed mesh that is wound inside out is turned: its inside is what it encloses.
+        let order = if closed && volume(mesh) < 0.0 { [0, 2, 1] } else { [0, 1, 2] };
+        self.corners.extend(mesh.positions.iter().map(|p| corner(placed.point(*p))));
+        self.normals.extend(mesh.normals.iter().map(|n| exact_normalize(placed.normal(*n))));
+        for (i, (triangle, primitive)) in mesh.triangles.iter().zip(first..).enumerate() {
+            if i % CHECK_EVERY == 0 {
+                progress.check()?;
+            }
+            let corners = order.map(|k: usize| corner_base + triangle[k]);
+            self.triangles.push(Triangle { corners, primitive });
+            let normals = mesh.triangle_normals.get(i);
+            self.triangle_normals.push(match normals {
+                Some(normals) => order.map(|k| normal_base + normals[k]),
+                None => [NO_NORMAL; 3],
+            });
+        }
+        Ok((item, !closed))
+    }
+}
+
+/// Unit length; a vector along an axis stays exactly along it. Zero stays zero.
+pub(super) fn exact_normalize(v: DVec3) -> DVec3 {
+    let largest = v.abs().max_element();
+    if largest > 0.0 && largest.is_finite() { (v / largest).normalize() } else { DVec3::ZERO }
+}
+
+/// The normal of a polygon, by Newell's sum about its first corner; as long as twice its area.
+fn newell_normal(points: &[DVec3]) -> DVec3 {
+    let Some(&origin) = points.first() else { return DVec3::ZERO };
+    points.windows(2).map(|pair| (pair[0] - origin).cross(pair[1] - origin)).sum()
+}
+
+/// Whether every edge is shared by exactly two triangles that run along it in opposite directions.
+fn is_closed(triangles: &[[u32; 3]], progress: &Progress) -> Result<bool, Cancelled> {
+    let mut edges: Vec<(u32, u32, bool)> = Vec::with_capacity(triangles.len() * 3);
+    for [a, b, c] in triangles.iter().copied() {
+        if a == b || b == c || c == a {
+            continue;
+        }
+        edges.extend([(a, b), (b, c), (c, a)].map(|(p, q)| (p.min(q), p.max(q), p < q)));
+    }
+    progress.check()?;
+    edges.sort_unstable();
+    progress.check()?;
+    let opposite = |pair: &[(u32, u32, bool)]| match pair {
+        [(a, b, false), (c, d, true)] => a == c && b == d,
+        _ => false,
+    };
+    let repeated = edges.windows(2).any(|pair| pair[0] == pair[1]);
+    Ok(!edges.is_empty() && !repeated && edges.chunks(2).all(opposite))
+}
+
+/// Six times the signed volume that a closed mesh encloses.
+fn volume(mesh: &Mesh) -> f64 {
+    let origin = mesh.positions.first().copied().unwrap_or_default();
+    let at = |v: u32| mesh.positions[v as usize] - origin;
+    mesh.triangles.iter().map(|[a, b, c]| at(*a).dot(at(*b).cross(at(*c)))).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+
+    #[test]
+    fn closed_means_every_edge_twice_and_opposite() {
+        let closed = |t: &[[u32; 3]]| is_closed(t, &Progress::default()).unwrap();
+        assert!(closed(&TETRAHEDRON));
+        assert!(!closed(&TETRAHEDRON[..3]));
+        let mut turned = TETRAHEDRON;
+        turned[2].swap(0, 1);
+        assert!(!closed(&turned));
+        let doubled = [TETRAHEDRON, TETRAHEDRON].concat();
+        assert!(!closed(&doubled));
+        assert!(!closed(&[]));
+    }
+
+    #[test]
+    fn axis_normals_are_exact() {
+        assert_eq!(exact_normalize(DVec3::new(0.0, -3e-200, 0.0)), DVec3::NEG_Y);
+        assert_eq!(exact_normalize(DVec3::ZERO), DVec3::ZERO);
+        let square = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
+        assert_eq!(newell_normal(&square), DVec3::new(0.0, 0.0, 2.0));
+    }
+}

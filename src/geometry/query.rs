@@ -1,0 +1,117 @@
+//! What is asked of a ray: the closest hit, or what stands before a light.
+
+use super::Hit;
+use super::compile::Primitives;
+
+/// Collects crossings while the hierarchy is walked.
+pub(super) trait Query {
+    /// Whether every crossing of a primitive counts, and not only its first.
+    const ALL: bool;
+
+    /// Crossings beyond this `t` are of no use; those at it may be.
+    fn limit(&self) -> f64;
+
+    /// A crossing at `t > 0`.
+    fn offer(&mut self, t: f64, primitive: u32);
+
+    /// Whether the answer is known.
+    fn is_done(&self) -> bool;
+}
+
+/// The smallest `t`; of equal ones the lowest primitive.
+#[derive(Debug)]
+pub(super) struct Closest {
+    t: f64,
+    primitive: u32,
+}
+
+impl Closest {
+    /// Nothing met yet.
+    #[inline(always)]
+    pub(super) fn new() -> Closest {
+        Closest { t: f64::INFINITY, primitive: u32::MAX }
+    }
+
+    /// What was met.
+    #[inline(always)]
+    pub(super) fn hit(&self) -> Option<Hit> {
+        let Closest { t, primitive } = *self;
+        (t < f64::INFINITY).then_some(Hit { t, primitive })
+    }
+}
+
+impl Query for Closest {
+    const ALL: bool = false;
+
+    #[inline(always)]
+    fn limit(&self) -> f64 {
+        self.t
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, t: f64, primitive: u32) {
+        if t < self.t || (t == self.t && primitive < self.primitive) {
+            *self = Closest { t, primitive };
+        }
+    }
+
+    #[inline(always)]
+    fn is_done(&self) -> bool {
+        false
+    }
+}
+
+/// The materials before a light at `t_max`, until one is opaque.
+#[derive(Debug)]
+pub(super) struct Shadow<'a> {
+    primitives: &'a Primitives,
+    t_max: f64,
+    opaque: &'a [bool],
+    crossed: &'a mut Vec<u16>,
+    blocker: Option<u16>,
+}
+
+impl<'a> Shadow<'a> {
+    /// Nothing met yet; `crossed` is empty.
+    #[inline(always)]
+    pub(super) fn new(
+        primitives: &'a Primitives,
+        t_max: f64,
+        opaque: &'a [bool],
+        crossed: &'a mut Vec<u16>,
+    ) -> Shadow<'a> {
+        Shadow { primitives, t_max, opaque, crossed, blocker: None }
+    }
+
+    /// The opaque material that was met.
+    #[inline(always)]
+    pub(super) fn blocker(&self) -> Option<u16> {
+        self.blocker
+    }
+}
+
+impl Query for Shadow<'_> {
+    const ALL: bool = true;
+
+    #[inline(always)]
+    fn limit(&self) -> f64 {
+        self.t_max
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, t: f64, primitive: u32) {
+        if t < self.t_max {
+            let material = self.primitives.solid(primitive).material;
+            if self.opaque[material as usize] {
+                self.blocker = Some(material);
+            } else {
+                self.crossed.push(material);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn is_done(&self) -> bool {
+        self.blocker.is_some()
+    }
+}

@@ -1,0 +1,482 @@
+//! The hierarchy against all primitives one by one, on every SIMD level, and the rules of ownership.
+
+use std::sync::Arc;
+
+use fearless_simd::{Level, dispatch};
+use glam::DVec3;
+
+use super::generate;
+use super::query::{Closest, Shadow};
+use super::{Geometry, Hit, Leaving, Ray, Stack};
+use crate::color::Rgb;
+use crate::progress::{Cancelled, Progress};
+use crate::scene::mesh::Mesh;
+use crate::scene::{
+    Background, Camera, Lens, Material, Paint, Picture, Placement, Scene, Shape, Solid, Trace,
+};
+
+/// A fixed stream of numbers (splitmix64).
+pub(super) struct Random(pub(super) u64);
+
+impl Random {
+    pub(super) fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    pub(super) fn below(&mut self, n: usize) -> usize {
+        (self.bits() % n as u64) as usize
+    }
+
+    /// In −1 … 1.
+    pub(super) fn signed(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    pub(super) fn in_cube(&mut self) -> DVec3 {
+        DVec3::new(self.signed(), self.signed(), self.signed())
+    }
+
+    pub(super) fn direction(&mut self) -> DVec3 {
+        loop {
+            let v = self.in_cube();
+            if (1e-3..1.0).contains(&v.length_squared()) {
+                return v.normalize();
+            }
+        }
+    }
+}
+
+pub(super) fn scene(solids: Vec<Solid>) -> Scene {
+    let material = |name: &str, paint| Material {
+        name: name.into(),
+        paint,
+        kloc: Rgb::WHITE,
+        ambient: Rgb::WHITE,
+        diffuse: Rgb::WHITE,
+        specular: Rgb::BLACK,
+        shininess: 1.0,
+        metallic: 0.0,
+        emission: Rgb::BLACK,
+        reflect: Rgb::BLACK,
+        transmit: Rgb::BLACK,
+        filter: Rgb::WHITE,
+        ior: 1.0,
+    };
+    let checker = Paint::Checker { a: Rgb::WHITE, b: Rgb::BLACK, size: 1.0 };
+    Scene {
+        ambient_light: Rgb::WHITE,
+        picture: Picture { size: [1, 1], exposure: 0.0 },
+        camera: Camera {
+            eye: DVec3::ZERO,
+            target: DVec3::X,
+            up: DVec3::Z,
+            lens: Lens::Perspective { fov_degrees: 40.0 },
+        },
+        background: Background { color: Rgb::BLACK },
+        trace: Trace { samples: 1, depth: 1, cutoff: 0.0 },
+        lights: vec![],
+        materials: vec![
+            material("plain", Paint::Solid(Rgb::WHITE)),
+            material("checkered", checker),
+        ],
+        solids,
+    }
+}
+
+pub(super) fn solid(shape: Shape) -> Solid {
+    Solid { name: String::new(), shape, material: 0, placement: Placement::default() }
+}
+
+pub(super) fn mesh_solid(mesh: Mesh) -> Solid {
+    solid(Shape::Mesh { file: String::new(), mesh: Arc::new(mesh) })
+}
+
+/// The scene moved by `offset`, after being scaled.
+pub(super) fn moved(mut solids: Vec<Solid>, scale: f64, offset: DVec3) -> Vec<Solid> {
+    for solid in &mut solids {
+        solid.placement.translate = solid.placement.translate * scale + offset;
+        solid.placement.scale *= scale;
+    }
+    solids
+}
+
+pub(super) fn build(solids: Vec<Solid>) -> Geometry {
+    Geometry::build(&scene(solids), &Progress::default()).unwrap()
+}
+
+/// A cube from −1 to 1 as twelve triangles.
+pub(super) fn triangle_cube() -> Mesh {
+    let at = |i: usize, bit: usize| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+    let positions = (0..8).map(|i| DVec3::new(at(i, 0), at(i, 1), at(i, 2))).collect();
+    let quads =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+    Mesh { positions, triangles, ..Mesh::default() }
+}
+
+fn knot() -> Mesh {
+    generate::knot([2, 3], 0.25, [120, 16])
+}
+
+fn levels() -> [Level; 2] {
+    [Level::new(), Level::baseline()]
+}
+
+pub(super) fn closest(
+    geometry: &Geometry,
+    level: Level,
+    stack: &mut Stack,
+    ray: &Ray,
+    leaving: Option<Leaving>,
+) -> Option<Hit> {
+    dispatch!(level, simd => geometry.closest_hit(simd, stack, ray, leaving))
+}
+
+/// The blocker, or the materials crossed in ascending order.
+pub(super) fn shadow(
+    geometry: &Geometry,
+    level: Level,
+    stack: &mut Stack,
+    (ray, t_max): (&Ray, f64),
+    leaving: Option<Leaving>,
+    opaque: &[bool],
+) -> Result<Vec<u16>, u16> {
+    let mut crossed = vec![77];
+    let blocker = dispatch!(level, simd =>
+        geometry.occluded(simd, stack, ray, t_max, leaving, opaque, &mut crossed));
+    crossed.sort_unstable();
+    blocker.map_or(Ok(crossed), Err)
+}
+
+fn brute_closest(geometry: &Geometry, ray: &Ray, leaving: Option<Leaving>) -> Option<Hit> {
+    let mut query = Closest::new();
+    geometry.traverse_all(ray, leaving, &mut query);
+    query.hit()
+}
+
+fn brute_crossed(geometry: &Geometry, ray: &Ray, t_max: f64) -> Vec<u16> {
+    let mut crossed = vec![];
+    let mut query = Shadow::new(&geometry.primitives, t_max, &[false; 2], &mut crossed);
+    geometry.traverse_all(ray, None, &mut query);
+    crossed.sort_unstable();
+    crossed
+}
+
+/// Points worth aiming at: corners of triangles, polygons and boxes, middles of edges, poles.
+fn targets(geometry: &Geometry) -> Vec<DVec3> {
+    let all = &geometry.primitives;
+    let corner = |v: u32| {
+        let [x, y, z, _] = all.corners[v as usize];
+        DVec3::new(x, y, z)
+    };
+    let mut targets = vec![];
+    for triangle in all.triangles.iter().step_by(1 + all.triangles.len() / 2000) {
+        let [a, b, _] = triangle.corners.map(corner);
+        targets.extend([a, (a + b) * 0.5]);
+    }
+    for sphere in all.spheres.iter().step_by(1 + all.spheres.len() / 500) {
+        targets.extend([sphere.center, sphere.center + DVec3::Y * sphere.radius]);
+    }
+    let [lo, hi] = geometry.bounds().unwrap();
+    targets.extend([lo, hi, (lo + hi) * 0.5, DVec3::new(lo.x, hi.y, lo.z)]);
+    targets
+}
+
+/// A third parallel to an axis with ±0, a third aimed at targets, a third random.
+fn mixed_ray(random: &mut Random, geometry: &Geometry, targets: &[DVec3]) -> Ray {
+    let [lo, hi] = geometry.bounds().unwrap();
+    let (middle, half) = ((lo + hi) * 0.5, (hi - lo) * 0.5);
+    let target = targets[random.below(targets.len())];
+    let far = if random.below(8) == 0 { 1e5 } else { 1.7 };
+    match random.below(3) {
+        0 => {
+            let axis = random.below(3);
+            let zero = |bit: bool| if bit { 0.0 } else { -0.0 };
+            let mut d = [zero(random.below(2) == 0), zero(random.below(2) == 0), 0.0];
+            d[2] = if random.below(2) == 0 { 1.0 } else { -1.0 };
+            d.rotate_left(axis);
+            let through =
+                if random.below(2) == 0 { target } else { middle + random.in_cube() * half };
+            let mut o = through.to_array();
+            let (axis, sign) = ((2 + 3 - axis) % 3, d[(2 + 3 - axis) % 3]);
+            o[axis] -= sign * far * 2.0 * half.to_array()[axis];
+            Ray { origin: o.into(), direction: d.into() }
+        }
+        1 => {
+            let origin = middle + random.direction() * half * far;
+            Ray { origin, direction: (target - origin).normalize_or(DVec3::X) }
+        }
+        _ => Ray { origin: middle + random.in_cube() * half * far, direction: random.direction() },
+    }
+}
+
+/// The places where the hierarchy and the list of all primitives disagree.
+fn disagreements(geometry: &Geometry, truth: &Geometry, rays: usize, seed: u64) -> usize {
+    let (mut random, targets) = (Random(seed), targets(geometry));
+    let mut stack = Stack::new(geometry);
+    let [lo, hi] = geometry.bounds().unwrap();
+    let mut wrong = 0;
+    let mut hits = 0;
+    for i in 0..rays {
+        let ray = mixed_ray(&mut random, geometry, &targets);
+        let first = brute_closest(truth, &ray, None);
+        let t_max = match first {
+            Some(hit) => hit.t * if i % 2 == 0 { 1.0 } else { 1.0 + f64::EPSILON },
+            None => (hi - lo).length() * 3.0,
+        };
+        let crossed = brute_crossed(truth, &ray, t_max);
+        hits += usize::from(first.is_some());
+        for level in levels() {
+            let found = closest(geometry, level, &mut stack, &ray, None);
+            let same = found.map(|h| (h.t.to_bits(), h.primitive))
+                == first.map(|h| (h.t.to_bits(), h.primitive));
+            let seen = shadow(geometry, level, &mut stack, (&ray, t_max), None, &[false; 2]);
+            wrong += usize::from(!same || seen.as_ref() != Ok(&crossed));
+        }
+        // A bounce from the hit.
+        if let Some(hit) = first {
+            let at = truth.interaction(&ray, hit);
+            let (ray, leaving) = truth.spawn(&at, random.direction());
+            let next = brute_closest(truth, &ray, Some(leaving));
+            let found = closest(geometry, Level::new(), &mut stack, &ray, Some(leaving));
+            wrong += usize::from(found != next);
+        }
+    }
+    assert!(hits > rays / 20, "only {hits} of {rays} rays hit");
+    wrong
+}
+
+fn boxes() -> Vec<Solid> {
+    let mut random = Random(5);
+    let cell = |random: &mut Random| random.below(8) as f64;
+    let mut solids = vec![];
+    for i in 0..150 {
+        let min = DVec3::new(cell(&mut random), cell(&mut random), cell(&mut random));
+        let mut one = solid(match i % 5 {
+            0 => Shape::Sphere { center: min, radius: 0.5 },
+            1 => Shape::Polygon { points: vec![min, min + DVec3::X, min + DVec3::ONE] },
+            _ => Shape::Box { min, max: min + DVec3::ONE },
+        });
+        if i % 3 == 0 {
+            one.placement.rotate_degrees = DVec3::new(0.0, 0.0, 30.0 * random.signed());
+            one.placement.scale = DVec3::new(1.0, 1.0 + 0.5 * (i % 2) as f64, 1.0);
+        }
+        one.material = i % 2;
+        solids.push(one);
+    }
+    solids.push(solid(Shape::Plane { normal: DVec3::Z, offset: 1.0 }));
+    solids
+}
+
+fn flake() -> Vec<Solid> {
+    vec![solid(Shape::Sphereflake { center: DVec3::ZERO, radius: 0.5, levels: 4 })]
+}
+
+#[test]
+fn hierarchy_is_the_list() {
+    let coincident = || (0..300).map(|_| solid(Shape::Sphere { center: DVec3::ONE, radius: 1.0 }));
+    let mixed = || {
+        let mut all = boxes();
+        all.push(mesh_solid(triangle_cube()));
+        all.extend(flake());
+        all
+    };
+    let far = DVec3::new(1e6, -1e6, 1e6);
+    let scenes: Vec<(Vec<Solid>, usize)> = vec![
+        (vec![mesh_solid(knot())], 14_000),
+        (moved(vec![mesh_solid(knot())], 1.0, far), 4_000),
+        (flake(), 30_000),
+        (moved(flake(), 1.0, far), 8_000),
+        (boxes(), 40_000),
+        (coincident().collect(), 3_000),
+        (mixed(), 10_000),
+        (moved(mixed(), 1e-3, far * 1e-2), 5_000),
+    ];
+    for (i, (solids, rays)) in scenes.into_iter().enumerate() {
+        let geometry = build(solids);
+        assert_eq!(disagreements(&geometry, &geometry, rays, i as u64), 0, "scene {i}");
+    }
+}
+
+#[test]
+fn disagreements_are_noticed() {
+    let mut solids = flake();
+    let geometry = build(solids.clone());
+    solids.push(solid(Shape::Sphere { center: DVec3::X * 0.6, radius: 0.1 }));
+    assert!(disagreements(&geometry, &build(solids), 1000, 1) > 0);
+}
+
+#[test]
+fn a_hundred_thousand_coincident_spheres() {
+    let one = solid(Shape::Sphere { center: DVec3::ONE, radius: 1.0 });
+    let geometry = build(vec![one; 100_000]);
+    let ray = Ray { origin: DVec3::new(1.0, 1.0, 5.0), direction: DVec3::NEG_Z };
+    let hit = closest(&geometry, Level::new(), &mut Stack::new(&geometry), &ray, None);
+    assert_eq!(hit, Some(Hit { t: 3.0, primitive: 0 }));
+}
+
+#[test]
+fn extreme_sizes_together() {
+    let tiny = DVec3::splat(1e-30);
+    let triangle = |s: f64| Mesh {
+        positions: vec![DVec3::ZERO, DVec3::X * s, DVec3::Y * s],
+        triangles: vec![[0, 1, 2]],
+        ..Mesh::default()
+    };
+    let geometry = build(vec![mesh_solid(triangle(1e-30)), mesh_solid(triangle(1e30))]);
+    let mut stack = Stack::new(&geometry);
+    let ray = Ray { origin: tiny * 0.25 + DVec3::Z * 1e-30, direction: DVec3::NEG_Z };
+    let hit = closest(&geometry, Level::new(), &mut stack, &ray, None).unwrap();
+    assert_eq!(hit.primitive, 0);
+    let ray = Ray { origin: DVec3::new(1e29, 1e29, 1e30), direction: DVec3::NEG_Z };
+    let hit = closest(&geometry, Level::new(), &mut stack, &ray, None).unwrap();
+    assert_eq!(hit.primitive, 1);
+}
+
+#[test]
+fn nothing_and_cancel() {
+    let geometry = build(vec![]);
+    let ray = Ray { origin: DVec3::ZERO, direction: DVec3::X };
+    assert_eq!(closest(&geometry, Level::new(), &mut Stack::new(&geometry), &ray, None), None);
+    assert_eq!((geometry.bounds(), geometry.primitives()), (None, 0));
+    let progress = Progress::default();
+    progress.cancel();
+    assert_eq!(Geometry::build(&scene(flake()), &progress).unwrap_err(), Cancelled);
+}
+
+#[test]
+fn powers_of_two_change_no_bit() {
+    let mut solids = boxes();
+    solids.push(mesh_solid(knot()));
+    solids.extend(flake());
+    let one = build(solids.clone());
+    let targets = targets(&one);
+    let mut stack = Stack::new(&one);
+    for exponent in [-20, 7, 20] {
+        let k = 2f64.powi(exponent);
+        let mut scaled = moved(solids.clone(), k, DVec3::ZERO);
+        for solid in &mut scaled {
+            // A plane's offset is scaled by its placement.
+            assert_eq!(solid.placement.translate, DVec3::ZERO);
+        }
+        let scaled = build(scaled);
+        let mut random = Random(3);
+        for _ in 0..4000 {
+            let ray = mixed_ray(&mut random, &one, &targets);
+            let large = Ray { origin: ray.origin * k, ..ray };
+            let a = closest(&one, Level::new(), &mut stack, &ray, None);
+            let b = closest(&scaled, Level::new(), &mut stack, &large, None);
+            assert_eq!(a.map(|h| (h.t * k, h.primitive)), b.map(|h| (h.t, h.primitive)));
+            if let (Some(a), Some(b)) = (a, b) {
+                let (p, q) = (one.interaction(&ray, a), scaled.interaction(&large, b));
+                assert_eq!(p.point * k, q.point);
+                assert_eq!(p.geometric_normal, q.geometric_normal);
+                assert_eq!(p.shading_normal, q.shading_normal);
+            }
+        }
+    }
+}
+
+/// Crossings of a ray through the whole geometry.
+fn crossings(geometry: &Geometry, stack: &mut Stack, ray: &Ray) -> usize {
+    let ray = (ray, f64::INFINITY);
+    shadow(geometry, Level::new(), stack, ray, None, &[false; 2]).unwrap().len()
+}
+
+#[test]
+fn closed_meshes_are_crossed_evenly() {
+    let mut random = Random(11);
+    for mesh in [triangle_cube(), knot()] {
+        let geometry = build(vec![mesh_solid(mesh)]);
+        let targets = targets(&geometry);
+        let mut stack = Stack::new(&geometry);
+        for i in 0..60_000 {
+            let target = targets[i % targets.len()];
+            let origin = match i % 3 {
+                0 => target + [DVec3::X, DVec3::Y, DVec3::Z][i % 7 % 3] * 8.0,
+                1 => random.direction() * 5.0,
+                _ => (DVec3::new(3.0, 4.0, 5.0) + random.in_cube().round()) * 2.0,
+            };
+            let ray = Ray { origin, direction: (target - origin).normalize() };
+            let count = crossings(&geometry, &mut stack, &ray);
+            assert_eq!(count % 2, 0, "{count} crossings from {origin} to {target}");
+        }
+    }
+}
+
+#[test]
+fn an_open_mesh_is_not_crossed_evenly() {
+    let mut mesh = triangle_cube();
+    mesh.triangles.pop();
+    let geometry = build(vec![mesh_solid(mesh)]);
+    let mut stack = Stack::new(&geometry);
+    let mut random = Random(1);
+    let odd = (0..1000).filter(|_| {
+        let ray = Ray { origin: random.direction() * 5.0, direction: random.direction() };
+        crossings(&geometry, &mut stack, &ray) % 2 == 1
+    });
+    assert!(odd.count() > 0);
+}
+
+#[test]
+fn shared_edges_of_polygons_have_one_owner() {
+    // The unit square as a concave and three convex pieces around (1/3, 1/3).
+    let p = |x: f64, y: f64| DVec3::new(x, y, 0.25);
+    let third = 1.0 / 3.0;
+    let pieces = [
+        vec![p(0.0, 0.0), p(1.0, 0.0), p(third, third), p(0.0, 1.0)],
+        vec![p(1.0, 0.0), p(1.0, 1.0), p(third, third)],
+        vec![p(1.0, 1.0), p(0.0, 1.0), p(third, third)],
+    ];
+    let geometry = build(pieces.map(|points| solid(Shape::Polygon { points })).to_vec());
+    let mut stack = Stack::new(&geometry);
+    let mut random = Random(2);
+    let corners = [p(1.0, 0.0), p(1.0, 1.0), p(0.0, 1.0)];
+    for i in 0..30_000 {
+        let s = (i % 64) as f64 / 64.0;
+        let target = p(third, third).lerp(corners[i % 3], s);
+        let origin = if i % 2 == 0 {
+            target + DVec3::Z
+        } else {
+            DVec3::new(random.signed(), random.signed(), 2.0)
+        };
+        let ray = Ray { origin, direction: (target - origin).normalize() };
+        assert_eq!(crossings(&geometry, &mut stack, &ray), 1, "{ray:?}");
+    }
+}
+
+#[test]
+fn checker_on_a_boundary_shows_the_upper_cube() {
+    // A plane, a box, a polygon and triangles, all with z = −1 on top.
+    let points = [(3.0, 3.0), (4.0, 3.0), (4.0, 4.0), (3.0, 4.0)]
+        .map(|(x, y)| DVec3::new(x, y, -1.0))
+        .to_vec();
+    let mesh = Mesh {
+        positions: points.clone(),
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    };
+    let shapes = [
+        solid(Shape::Plane { normal: DVec3::Z * 7.0, offset: -1.0 }),
+        solid(Shape::Box { min: DVec3::splat(-9.0), max: DVec3::new(9.0, 9.0, -1.0) }),
+        solid(Shape::Polygon { points }),
+        mesh_solid(mesh),
+    ];
+    let mut random = Random(4);
+    for mut one in shapes {
+        one.material = 1;
+        let geometry = build(vec![one]);
+        let mut stack = Stack::new(&geometry);
+        for _ in 0..2000 {
+            let target = DVec3::new(3.5, 3.5, -1.0) + random.in_cube() * DVec3::new(0.5, 0.5, 0.0);
+            let origin = random.direction().abs() * 7.0;
+            let ray = Ray { origin, direction: (target - origin).normalize() };
+            let hit = closest(&geometry, Level::new(), &mut stack, &ray, None).unwrap();
+            // 3 + 3 − 1 is odd.
+            assert_eq!(geometry.interaction(&ray, hit).slot, 1, "{target}");
+        }
+    }
+}

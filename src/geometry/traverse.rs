@@ -1,0 +1,359 @@
+//! The walk of a ray through the hierarchy: f32 boxes on the way, f64 decisions at the end.
+
+use fearless_simd::{Simd, f32x8, prelude::*};
+
+use super::compile::Kind;
+use super::hierarchy::{Child, Frame, Node, STACK, Stack, Target};
+use super::packet::{ShapePacket, SpherePacket, TrianglePacket, WIDTH};
+use super::primitive::{Roots, Start};
+use super::query::Query;
+use super::shear::Shear;
+use super::{Geometry, Leaving, Ray};
+
+/// Direction components are kept at least this far from zero: over the few units that a ray has in
+/// the frame, the change is far below the boxes' padding.
+const LEAST_COMPONENT: f64 = 1e-12;
+
+/// Padding of the boxes relative to the coordinates: eight half ulps, more than all roundings of a
+/// box test together.
+const PADDING: f64 = 8.0 * (f32::EPSILON as f64 / 2.0);
+
+/// The ray in the hierarchy's frame, in f32, with every lane the same.
+pub(super) struct Beam<S: Simd> {
+    /// Moved along the ray to the surroundings of the scene.
+    pub(super) origin: [f32x8<S>; 3],
+    /// Unit up to rounding.
+    pub(super) direction: [f32x8<S>; 3],
+    /// 1 + the sum of the origin's components: no coordinate met on the way is larger.
+    pub(super) size: f32x8<S>,
+    reciprocal: [f32x8<S>; 3],
+    /// (origin ± padding) · reciprocal, for the nearer and the farther plane.
+    near: [f32x8<S>; 3],
+    far: [f32x8<S>; 3],
+    /// Per axis: which plane of a box is the nearer one.
+    nearer: [usize; 3],
+    start: f64,
+    scale: f64,
+    /// The `t` in the frame beyond which there is nothing.
+    longest: f32,
+}
+
+/// What a leaf needs beside the packet.
+struct Walk<'a> {
+    ray: &'a Ray,
+    shear: Shear,
+    leaving: Departure,
+}
+
+/// The primitive that a ray leaves, looked up.
+#[derive(Clone, Copy, Debug)]
+struct Departure {
+    /// `u32::MAX` if there is none.
+    primitive: u32,
+    start: Start,
+    /// The triangles of its mesh, as a range of primitives; empty if it is no triangle.
+    mesh: (u32, u32),
+    /// Whether the mesh is closed.
+    closed: bool,
+}
+
+impl<S: Simd> Beam<S> {
+    #[inline(always)]
+    fn new(simd: S, frame: &Frame, ray: &Ray) -> Beam<S> {
+        let splat = |x: f32| f32x8::splat(simd, x);
+        let (o, d) = (frame.local(ray.origin), ray.direction);
+        // The frame's content is within √3 < 2 of its origin: skip the way to the ball of radius 2.
+        let start = (-o.dot(d) - 2.0).max(0.0);
+        let moved = o + d * start;
+        let size = 1.0 + moved.abs().element_sum();
+        // f64 roundings count once the origin is very far away.
+        let padding = PADDING * size + o.abs().element_sum() * 1e-14;
+        let (mut reciprocal, mut near, mut far) =
+            ([splat(0.0); 3], [splat(0.0); 3], [splat(0.0); 3]);
+        let mut nearer = [0; 3];
+        for axis in 0..3 {
+            let component = d[axis].abs().max(LEAST_COMPONENT).copysign(d[axis]);
+            let r = 1.0 / component;
+            reciprocal[axis] = splat(r as f32);
+            near[axis] = splat((moved[axis] * r + padding * r.abs()) as f32);
+            far[axis] = splat((moved[axis] * r - padding * r.abs()) as f32);
+            nearer[axis] = usize::from(component < 0.0);
+        }
+        Beam {
+            origin: [0, 1, 2].map(|k| splat(moved[k] as f32)),
+            direction: [0, 1, 2].map(|k| splat(d[k] as f32)),
+            size: splat((size + o.abs().element_sum() * 1e-9) as f32),
+            reciprocal,
+            near,
+            far,
+            nearer,
+            start: start / frame.scale,
+            scale: frame.scale,
+            longest: (2.0 * size + 4.0) as f32,
+        }
+    }
+
+    /// A world `t` in the frame, rounded up.
+    #[inline(always)]
+    fn limit(&self, t: f64) -> f32 {
+        let local = ((t - self.start) * self.scale) as f32;
+        (local + (local.abs() * 1e-6 + 1e-30)).min(self.longest)
+    }
+
+    /// The children of a node that the ray may meet up to `limit`, and how far away each is at least.
+    #[inline(always)]
+    fn meet(&self, simd: S, node: &Node, limit: f32x8<S>) -> (u32, f32x8<S>) {
+        let plane = |axis: usize, which: usize| {
+            f32x8::from_slice(simd, &node.bounds[axis][which & 1]) * self.reciprocal[axis]
+        };
+        let [nx, ny, nz] = [0, 1, 2].map(|k| plane(k, self.nearer[k]) - self.near[k]);
+        let [fx, fy, fz] = [0, 1, 2].map(|k| plane(k, self.nearer[k] ^ 1) - self.far[k]);
+        let near = nx.max(ny).max(nz.max(0.0));
+        let far = fx.min(fy).min(fz.min(limit));
+        (near.simd_le(far).to_bitmask() as u32, near)
+    }
+}
+
+impl Geometry {
+    /// Offers every crossing to the query that can matter to it.
+    #[inline(always)]
+    pub(super) fn traverse<S: Simd, Q: Query>(
+        &self,
+        simd: S,
+        stack: &mut Stack,
+        ray: &Ray,
+        leaving: Option<Leaving>,
+        query: &mut Q,
+    ) {
+        let walk = Walk { ray, shear: Shear::new(ray), leaving: self.departure(leaving) };
+        for plane in &self.primitives.planes {
+            let t = plane.root(ray, walk.leaving.start_of(plane.primitive));
+            if t > 0.0 && t < f64::INFINITY {
+                query.offer(t, plane.primitive);
+            }
+        }
+        let Some(root) = self.hierarchy.root else { return };
+        if query.is_done() {
+            return;
+        }
+        let beam = Beam::new(simd, &self.hierarchy.frame, ray);
+        let mut limit = beam.limit(query.limit());
+        let mut limits = f32x8::splat(simd, limit);
+        let entries = &mut *stack.entries;
+        let mut top = 0;
+        let mut current = root;
+        loop {
+            if current.target() == Target::Node {
+                let node = &self.hierarchy.nodes[current.index()];
+                let (mask, near) = beam.meet(simd, node, limits);
+                if mask != 0 {
+                    current = next_child::<S, Q>(node, mask, near, entries, &mut top);
+                    continue;
+                }
+            } else {
+                self.leaf(simd, &beam, current, limits, &walk, query);
+                if query.is_done() {
+                    return;
+                }
+                if !Q::ALL {
+                    limit = beam.limit(query.limit());
+                    limits = f32x8::splat(simd, limit);
+                }
+            }
+            loop {
+                if top == 0 {
+                    return;
+                }
+                top -= 1;
+                let entry = entries[top & (STACK - 1)];
+                if f32::from_bits((entry >> 32) as u32) <= limit {
+                    current = Child(entry as u32);
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Decides the candidates of a leaf.
+    #[inline(always)]
+    fn leaf<S: Simd, Q: Query>(
+        &self,
+        simd: S,
+        beam: &Beam<S>,
+        leaf: Child,
+        limits: f32x8<S>,
+        walk: &Walk<'_>,
+        query: &mut Q,
+    ) {
+        let (packets, index) = (&self.hierarchy.packets, leaf.index());
+        match leaf.target() {
+            Target::Node => {}
+            Target::Spheres => {
+                let packet: &SpherePacket = &packets.spheres[index];
+                each_lane(packet.candidates(simd, beam, limits), &packet.items, |item| {
+                    self.sphere(item, walk, query);
+                    query.is_done()
+                });
+            }
+            Target::Triangles => {
+                let packet: &TrianglePacket = &packets.triangles[index];
+                each_lane(packet.candidates(simd, beam, limits), &packet.items, |item| {
+                    self.triangle(item, walk, query);
+                    query.is_done()
+                });
+            }
+            Target::Shapes => {
+                let packet: &ShapePacket = &packets.shapes[index];
+                for item in packet.items() {
+                    self.shape(*item as usize, walk, query);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn sphere<Q: Query>(&self, item: usize, walk: &Walk<'_>, query: &mut Q) {
+        let sphere = &self.primitives.spheres[item];
+        let roots = sphere.roots(walk.ray, walk.leaving.start_of(sphere.primitive));
+        offer_roots(roots, sphere.primitive, query);
+    }
+
+    #[inline(always)]
+    fn triangle<Q: Query>(&self, item: usize, walk: &Walk<'_>, query: &mut Q) {
+        let all = &self.primitives;
+        let triangle = &all.triangles[item];
+        let Some(crossing) = walk.shear.triangle(all.triangle_corners(triangle)) else { return };
+        let (t, primitive) = (crossing.t, triangle.primitive);
+        if !(t > 0.0 && t <= query.limit()) {
+            return;
+        }
+        let Departure { primitive: left, mesh, start, closed } = walk.leaving;
+        if primitive >= mesh.0 && primitive < mesh.1 {
+            let left_item = item.wrapping_add(left as usize).wrapping_sub(primitive as usize);
+            let noise = || {
+                all.is_departure_noise(walk.ray, [left_item, item], start == Start::Inside, closed)
+            };
+            if primitive == left || noise() {
+                return;
+            }
+        }
+        query.offer(t, primitive);
+    }
+
+    #[inline(always)]
+    fn shape<Q: Query>(&self, item: usize, walk: &Walk<'_>, query: &mut Q) {
+        let shape = &self.primitives.shapes[item];
+        let start = walk.leaving.start_of(shape.primitive);
+        offer_roots(shape.form.roots(walk.ray, &walk.shear, start), shape.primitive, query);
+    }
+
+    #[inline(always)]
+    fn departure(&self, leaving: Option<Leaving>) -> Departure {
+        let Some(Leaving { primitive, inside }) = leaving else {
+            return Departure {
+                primitive: u32::MAX,
+                start: Start::Elsewhere,
+                mesh: (0, 0),
+                closed: false,
+            };
+        };
+        let solid = self.primitives.solid(primitive);
+        let is_mesh = solid.item.kind == Kind::Triangle;
+        Departure {
+            primitive,
+            start: if inside { Start::Inside } else { Start::Outside },
+            mesh: if is_mesh { (solid.first, solid.first + solid.count) } else { (0, 0) },
+            closed: !solid.thin,
+        }
+    }
+
+    /// Offers every crossing of every primitive: the truth that the hierarchy is held to.
+    #[cfg(test)]
+    pub(super) fn traverse_all<Q: Query>(
+        &self,
+        ray: &Ray,
+        leaving: Option<Leaving>,
+        query: &mut Q,
+    ) {
+        let all = &self.primitives;
+        let walk = Walk { ray, shear: Shear::new(ray), leaving: self.departure(leaving) };
+        for plane in &all.planes {
+            let t = plane.root(ray, walk.leaving.start_of(plane.primitive));
+            if t > 0.0 && t < f64::INFINITY {
+                query.offer(t, plane.primitive);
+            }
+        }
+        (0..all.spheres.len()).for_each(|i| self.sphere(i, &walk, query));
+        (0..all.triangles.len()).for_each(|i| self.triangle(i, &walk, query));
+        (0..all.shapes.len()).for_each(|i| self.shape(i, &walk, query));
+    }
+}
+
+impl Departure {
+    #[inline(always)]
+    fn start_of(&self, primitive: u32) -> Start {
+        if primitive == self.primitive { self.start } else { Start::Elsewhere }
+    }
+}
+
+/// Calls `decide` for every set bit until it says stop.
+#[inline(always)]
+fn each_lane(mut mask: u32, items: &[u32; WIDTH], mut decide: impl FnMut(usize) -> bool) {
+    while mask != 0 {
+        let lane = mask.trailing_zeros() as usize;
+        mask &= mask - 1;
+        if decide(items[lane & (WIDTH - 1)] as usize) {
+            return;
+        }
+    }
+}
+
+/// Offers the crossings with `t > 0`; only the first one unless the query wants all.
+#[inline(always)]
+fn offer_roots<Q: Query>(Roots { near, far }: Roots, primitive: u32, query: &mut Q) {
+    if near > 0.0 {
+        query.offer(near, primitive);
+        if !Q::ALL {
+            return;
+        }
+    }
+    if far > 0.0 {
+        query.offer(far, primitive);
+    }
+}
+
+/// Of the children met, the nearest; the others wait on the stack, the nearest on top.
+#[inline(always)]
+fn next_child<S: Simd, Q: Query>(
+    node: &Node,
+    mut mask: u32,
+    near: f32x8<S>,
+    entries: &mut [u64; STACK],
+    top: &mut usize,
+) -> Child {
+    let first = mask.trailing_zeros() as usize & (WIDTH - 1);
+    mask &= mask - 1;
+    if mask == 0 {
+        return node.children[first];
+    }
+    let near = near.as_array();
+    let entry =
+        |lane: usize| u64::from(near[lane].to_bits()) << 32 | u64::from(node.children[lane].0);
+    let base = *top;
+    let mut best = entry(first);
+    while mask != 0 {
+        let mut other = entry(mask.trailing_zeros() as usize & (WIDTH - 1));
+        mask &= mask - 1;
+        if other < best {
+            std::mem::swap(&mut other, &mut best);
+        }
+        let mut place = *top;
+        while place > base && entries[(place - 1) & (STACK - 1)] < other {
+            entries[place & (STACK - 1)] = entries[(place - 1) & (STACK - 1)];
+            place -= 1;
+        }
+        entries[place & (STACK - 1)] = other;
+        *top += 1;
+    }
+    Child(best as u32)
+}
