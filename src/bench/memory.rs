@@ -10,7 +10,7 @@ use crate::fold::transport::{Plane, Transport, TransportTile};
 
 /// Reads every byte of the matrix once and writes every byte of the film once, with as little
 /// arithmetic as keeps the compiler from leaving it out.
-pub fn read_and_write(pool: &ThreadPool, transport: &Transport, film: &mut Film) {
+pub(super) fn read_and_write(pool: &ThreadPool, transport: &Transport, film: &mut Film) {
     let level = Level::new();
     pool.install(|| {
         let parts = film.blocks.par_chunks_exact_mut(TILE_BLOCKS).zip(&transport.tiles);
@@ -34,7 +34,7 @@ fn touch(tile: &TransportTile, blocks: &mut [FilmBlock]) {
 }
 
 /// The largest resident memory of this process so far in MB, where the system tells (Linux).
-pub fn peak_resident_mb() -> Option<f64> {
+pub(super) fn peak_resident_mb() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
     let kib: f64 = line.split_whitespace().nth(1)?.parse().ok()?;

@@ -11,7 +11,8 @@ use crate::film::{Film, Frame};
 use crate::fold::transport::Transport;
 use crate::forest::grow::RayCounts;
 use crate::progress::Progress;
-use crate::scene::path::{Kind, parameters, set};
+use crate::scene::path::{parameters, set};
+use crate::scene::range::Kind;
 use crate::scene::{Scene, path};
 use crate::session::trace::{TraceError, TraceReport, trace_only};
 use crate::session::{Class, Options, Session};
@@ -46,7 +47,8 @@ pub fn measure(name: &str, scene: Scene, options: Options) -> Result<Value, Trac
     row["memory_limit_ms"] = json!(shading.limit.median);
     row["reshade_full_ms"] = shading.product.json();
     row["reshade_over_limit"] = json!(shading.product.median / shading.limit.median);
-    row["develop_ms"] = json!({ "film": shading.product.median, "eight_bit": shading.eight_bit.json() });
+    row["develop_ms"] =
+        json!({ "film": shading.product.median, "eight_bit": shading.eight_bit.json() });
     row["terms_ms"] = json!(shading.terms.median);
     row["speedup"] = json!(report.seconds * 1e3 / shading.eight_bit.median);
     let edits = Edits::measure(&mut session)?;
@@ -130,7 +132,9 @@ struct Spread {
 impl Spread {
     fn of(mut times: Vec<f64>) -> Spread {
         times.sort_by(f64::total_cmp);
-        let at = |share: f64| times.get(((times.len() as f64 * share) as usize).min(times.len().saturating_sub(1)));
+        let at = |share: f64| {
+            times.get(((times.len() as f64 * share) as usize).min(times.len().saturating_sub(1)))
+        };
         let pick = |share| at(share).copied().unwrap_or(f64::NAN);
         Spread { median: pick(0.5), p99: pick(0.99), count: times.len() }
     }
@@ -164,7 +168,8 @@ struct Shading {
 impl Shading {
     fn measure(session: &mut Session) -> Shading {
         let mut film = Film::new(session.transport().layout);
-        let limit = repeat(|| memory::read_and_write(session.pool(), session.transport(), &mut film));
+        let limit =
+            repeat(|| memory::read_and_write(session.pool(), session.transport(), &mut film));
         let product = repeat(|| session.develop_film(&mut film));
         let terms = repeat(|| session.evaluate_terms());
         let eight_bit = repeat(|| session.redraw());

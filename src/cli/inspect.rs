@@ -33,7 +33,8 @@ impl Inspect {
         let [w, h] = scene.picture.size;
         let [x, y] = self.pixel;
         if x >= w || y >= h {
-            let message = format!("--pixel {x},{y} is outside the picture: 0,0 … {},{}", w - 1, h - 1);
+            let message =
+                format!("--pixel {x},{y} is outside the picture: 0,0 … {},{}", w - 1, h - 1);
             return Err(Failure::input(message));
         }
         let progress = Progress::default();
@@ -71,7 +72,8 @@ fn print_terms(scene: &Scene, inspection: &Inspection) {
 
 fn print_node(scene: &Scene, node: &InspectedNode, by: &str, depth: usize) {
     let indent = "  ".repeat(depth);
-    let (solid, material) = (&scene.solids[node.solid as usize], &scene.materials[node.material as usize]);
+    let (solid, material) =
+        (&scene.solids[node.solid as usize], &scene.materials[node.material as usize]);
     print(&format!(
         "{indent}{by} → solid {}, material {}, slot {}, distance {:.6}",
         solid.name, material.name, node.slot, node.t
@@ -124,6 +126,8 @@ fn text(light: Rgb) -> String {
 }
 
 fn parse_pixel(text: &str) -> Result<[u32; 2], String> {
-    let parts = text.split_once(',').and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]));
+    let parts = text
+        .split_once(',')
+        .and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]));
     parts.ok_or_else(|| format!("`{text}` is not a pixel such as 640,360"))
 }

@@ -196,15 +196,17 @@ pub(crate) fn write_text(file: &Path, text: &str) -> Result<(), Failure> {
         return Ok(());
     }
     crate::film::write::atomically(file, |out| {
-        out.write_all(text.as_bytes()).and_then(|()| out.write_all(b"\n")).map_err(|e| e.to_string())
+        out.write_all(text.as_bytes())
+            .and_then(|()| out.write_all(b"\n"))
+            .map_err(|e| e.to_string())
     })
     .map_err(Failure::job)
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {
-    let parts = text.split_once(['x', 'X']).and_then(|(w, h)| {
-        Some([w.trim().parse().ok()?, h.trim().parse().ok()?])
-    });
+    let parts = text
+        .split_once(['x', 'X'])
+        .and_then(|(w, h)| Some([w.trim().parse().ok()?, h.trim().parse().ok()?]));
     parts.ok_or_else(|| format!("`{text}` is not a size such as 1920x1080"))
 }
 

@@ -240,7 +240,8 @@ mod tests {
         let forward = build(&mut (0..300));
         let backward = build(&mut (0..300).rev());
         assert_eq!(forward, backward);
-        let spelled: Vec<_> = (1..forward.nodes().len() as u32).map(|i| forward.factors(i)).collect();
+        let spelled: Vec<_> =
+            (1..forward.nodes().len() as u32).map(|i| forward.factors(i)).collect();
         assert!(spelled.is_sorted(), "depth-first order is the order of the words");
         assert!(forward.nodes().iter().enumerate().skip(1).all(|(i, n)| (n.parent as usize) < i));
     }

@@ -194,8 +194,7 @@ impl<'a> Grower<'a> {
         };
         worker.pending.push(root);
         while let Some(next) = worker.pending.pop() {
-            let hit =
-                self.geometry.closest_hit(simd, &mut worker.stack, &next.ray, next.leaving);
+            let hit = self.geometry.closest_hit(simd, &mut worker.stack, &next.ray, next.leaving);
             match (hit, next.parent) {
                 (Some(hit), parent) => {
                     if parent.is_none() {
@@ -305,7 +304,13 @@ impl<'a> Grower<'a> {
 
     /// Which media meet at a surface, and the list of solids behind it.
     #[inline(always)]
-    fn cross(&self, media: &mut Media, front: u32, at: &Interaction, surface: &Surface) -> Crossing {
+    fn cross(
+        &self,
+        media: &mut Media,
+        front: u32,
+        at: &Interaction,
+        surface: &Surface,
+    ) -> Crossing {
         if at.thin {
             return Crossing { eta: 1.0, behind: front };
         }

@@ -20,14 +20,8 @@ pub enum Branch {
     Absent,
 }
 
-const BRANCHES: [Branch; 6] = [
-    Branch::Grown,
-    Branch::Missed,
-    Branch::Zero,
-    Branch::Weight,
-    Branch::Depth,
-    Branch::Absent,
-];
+const BRANCHES: [Branch; 6] =
+    [Branch::Grown, Branch::Missed, Branch::Zero, Branch::Weight, Branch::Depth, Branch::Absent];
 
 /// Both branches of a node in a byte: the reflected one in bits 0…2, the transmitted one in bits
 /// 3…5, bit 6 set in total reflection. `0b0_010_000`: reflected grown, transmitted `Zero`.

@@ -110,6 +110,11 @@ impl Primitives {
         &self.solids[self.solid_of[primitive as usize] as usize]
     }
 
+    /// Index of the solid that a primitive belongs to.
+    pub(super) fn solid_index(&self, primitive: u32) -> u32 {
+        self.solid_of[primitive as usize]
+    }
+
     /// The corners of a triangle.
     #[inline(always)]
     pub(super) fn triangle_corners(&self, triangle: &Triangle) -> [&Corner; 3] {

@@ -139,6 +139,11 @@ impl Geometry {
         (Ray { origin: at.point, direction }, Leaving { primitive: at.primitive, inside })
     }
 
+    /// The solid that a primitive belongs to: an index into `Scene::solids`.
+    pub fn solid(&self, primitive: u32) -> u32 {
+        self.primitives.solid_index(primitive)
+    }
+
     /// How many primitives there are.
     pub fn primitives(&self) -> usize {
         self.primitives.count()

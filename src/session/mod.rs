@@ -105,7 +105,11 @@ pub struct Session {
 
 impl Session {
     /// Traces a scene.
-    pub fn open(scene: Scene, options: Options, progress: &Progress) -> Result<Session, TraceError> {
+    pub fn open(
+        scene: Scene,
+        options: Options,
+        progress: &Progress,
+    ) -> Result<Session, TraceError> {
         assert!(options.threads > 0, "a session needs a thread");
         let pool = ThreadPoolBuilder::new()
             .num_threads(options.threads)
@@ -163,7 +167,8 @@ impl Session {
         if let Some(what) = change.moves_rays {
             return Some(format!("{what} moves rays"));
         }
-        if !change.refold.is_empty() && self.transport.tiles.iter().any(|t| t.highlights.is_none()) {
+        if !change.refold.is_empty() && self.transport.tiles.iter().any(|t| t.highlights.is_none())
+        {
             return Some("highlight lists were released for memory".into());
         }
         if change.terms {
