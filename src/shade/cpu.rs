@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use crate::film::develop::{FrameRows, tile_rows};
 use crate::film::layout::{LANES, TILE_BLOCKS};
 use crate::film::{Film, FilmBlock, Frame};
-use crate::fold::transport::{Plane, Transport, TransportTile};
+use crate::fold::transport::{Block, Plane, Single, Transport, TransportTile};
 
 /// Which tiles to compute.
 #[derive(Clone, Copy, Debug)]
@@ -81,8 +81,7 @@ fn gather(tile: &TransportTile, values: &[[f32; 4]], gathered: &mut Vec<[f32; 4]
 #[inline(always)]
 fn film_tile(tile: &TransportTile, values: &[[f32; 4]], blocks: &mut [FilmBlock]) {
     for (block, out) in blocks.iter_mut().enumerate() {
-        let (entries, planes) = tile.block(block);
-        *out = sum(entries, planes, values);
+        *out = sum(tile.block(block), values);
     }
 }
 
@@ -95,18 +94,18 @@ fn frame_tile(
     rows: &mut FrameRows,
 ) {
     for block in 0..TILE_BLOCKS {
-        let (entries, planes) = tile.block(block);
-        rows.put(column, block, &sum(entries, planes, values), gain);
+        rows.put(column, block, &sum(tile.block(block), values), gain);
     }
 }
 
-/// Σ coefficient · value for the 16 pixels of a block.
+/// Σ coefficient · value for the 16 pixels of a block: the sum over the planes plus, where there are
+/// any, the sum over the single coefficients, each from +0 in canonical order.
 #[inline(always)]
-fn sum(entries: &[u32], planes: &[Plane], values: &[[f32; 4]]) -> FilmBlock {
+fn sum(block: Block, values: &[[f32; 4]]) -> FilmBlock {
     let mut red = [0.0f32; LANES];
     let mut green = [0.0f32; LANES];
     let mut blue = [0.0f32; LANES];
-    for (&entry, Plane(plane)) in entries.iter().zip(planes) {
+    for (&entry, Plane(plane)) in block.entries.iter().zip(block.planes) {
         let [r, g, b, lit] = values[entry as usize];
         if lit == 0.0 {
             continue;
@@ -117,5 +116,25 @@ fn sum(entries: &[u32], planes: &[Plane], values: &[[f32; 4]]) -> FilmBlock {
             blue[i] += plane[i] * b;
         }
     }
+    if !block.singles.is_empty() {
+        for (i, [r, g, b, _]) in sum_singles(block.singles, values).into_iter().enumerate() {
+            red[i] += r;
+            green[i] += g;
+            blue[i] += b;
+        }
+    }
     FilmBlock([red, green, blue])
+}
+
+/// The terms of few pixels, pixel by pixel.
+#[inline(always)]
+fn sum_singles(singles: &[Single], values: &[[f32; 4]]) -> [[f32; 4]; LANES] {
+    let mut sums = [[0.0f32; 4]; LANES];
+    for single in singles {
+        let value = values[single.entry()];
+        for (sum, v) in sums[single.lane()].iter_mut().zip(value) {
+            *sum += single.coefficient * v;
+        }
+    }
+    sums
 }
