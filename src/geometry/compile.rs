@@ -113,7 +113,8 @@ impl Primitives {
     /// The corners of a triangle.
     #[inline(always)]
     pub(super) fn triangle_corners(&self, triangle: &Triangle) -> [&Corner; 3] {
-        triangle.corners.map(|v| &self.corners[v as usize])
+        let [a, b, c] = triangle.corners;
+        [&self.corners[a as usize], &self.corners[b as usize], &self.corners[c as usize]]
     }
 
     /// Memory held, in bytes.

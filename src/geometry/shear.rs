@@ -20,6 +20,12 @@ pub(super) fn corner(p: DVec3) -> Corner {
     [p.x, p.y, p.z, 0.0]
 }
 
+/// The point of a corner.
+#[inline(always)]
+pub(super) fn point(&[x, y, z, _]: &Corner) -> DVec3 {
+    DVec3::new(x, y, z)
+}
+
 /// A ray prepared for corners. `axis[2]` is the largest component of the direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shear {

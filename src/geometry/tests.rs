@@ -168,10 +168,7 @@ fn brute_crossed(geometry: &Geometry, ray: &Ray, t_max: f64) -> Vec<u16> {
 /// Points worth aiming at: corners of triangles, polygons and boxes, middles of edges, poles.
 fn targets(geometry: &Geometry) -> Vec<DVec3> {
     let all = &geometry.primitives;
-    let corner = |v: u32| {
-        let [x, y, z, _] = all.corners[v as usize];
-        DVec3::new(x, y, z)
-    };
+    let corner = |v: u32| super::shear::point(&all.corners[v as usize]);
     let mut targets = vec![];
     for triangle in all.triangles.iter().step_by(1 + all.triangles.len() / 2000) {
         let [a, b, _] = triangle.corners.map(corner);

@@ -4,6 +4,7 @@ use fearless_simd::Level;
 use glam::DVec3;
 
 use super::generate;
+use super::shear::point;
 use super::tests::{Random, build, closest, mesh_solid, moved, shadow, solid, triangle_cube};
 use super::{Geometry, Hit, Interaction, Ray, Stack};
 use crate::scene::mesh::Mesh;
@@ -80,7 +81,7 @@ fn surface_point(
     let all = &geometry.primitives;
     let target = if aimed && !all.corners.is_empty() && random.below(3) == 0 {
         let triangle = &all.triangles[random.below(all.triangles.len())];
-        let [a, b, _] = all.triangle_corners(triangle).map(|&[x, y, z, _]| DVec3::new(x, y, z));
+        let [a, b, _] = all.triangle_corners(triangle).map(point);
         a.lerp(b, random.below(3) as f64 / 2.0)
     } else {
         offset + random.in_cube() * (scale * 0.6)
