@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::generate;
 use super::shear::point;
-use super::tests::{Random, build, closest, mesh_solid, moved, shadow, solid, triangle_cube};
+use super::testing::{Random, build, closest, mesh_solid, moved, shadow, solid, triangle_cube};
 use super::{Geometry, Hit, Interaction, Ray, Stack};
 use crate::scene::mesh::Mesh;
 use crate::scene::{Placement, Shape, Solid};

@@ -70,7 +70,8 @@ impl<S: Simd> Beam<S> {
         // f64 roundings count once the origin is very far away.
         let padding = PADDING * size + o.abs().element_sum() * 1e-14;
         let away = DVec3::new(away(d.x), away(d.y), away(d.z));
-        let (r, at) = (away.recip(), moved / away);
+        let r = away.recip();
+        let at = moved * r;
         let margin = r.abs() * padding;
         let nearer = [usize::from(r.x < 0.0), usize::from(r.y < 0.0), usize::from(r.z < 0.0)];
         Beam {
@@ -344,7 +345,8 @@ fn next_child<S: Simd, Q: Query>(
             std::mem::swap(&mut other, &mut best);
         }
         let mut place = *top;
-        while place > base && entries[(place - 1) & (STACK - 1)] < other {
+        // All children must be asked when everything counts: their order is of no use then.
+        while !Q::ALL && place > base && entries[(place - 1) & (STACK - 1)] < other {
             entries[place & (STACK - 1)] = entries[(place - 1) & (STACK - 1)];
             place -= 1;
         }
