@@ -138,3 +138,42 @@ fn sum_singles(singles: &[Single], values: &[[f32; 4]]) -> [[f32; 4]; LANES] {
     }
     sums
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A number in [0, 1) from a counter.
+    fn value(i: usize) -> f32 {
+        ((i * 7919 + 13) % 1009) as f32 / 1009.0
+    }
+
+    #[test]
+    fn every_simd_level_gives_the_same_bits() {
+        let planes: Vec<Plane> =
+            (0..40).map(|t| Plane(std::array::from_fn(|i| value(t * 16 + i) / 3.0))).collect();
+        let entries: Vec<u32> = (0..40).map(|t| t * 2).collect();
+        let singles: Vec<Single> =
+            (0..30).map(|t| Single::new(t * 2 + 1, t as usize % 16, value(t as usize))).collect();
+        let values: Vec<[f32; 4]> =
+            (0..80).map(|t| [value(t), value(t + 1) * 1e-3, value(t + 2) * 7.0, 1.0]).collect();
+        let block = Block { entries: &entries, planes: &planes, singles: &singles };
+        let scalar = sum(block, &values);
+        for level in [Level::baseline(), Level::new()] {
+            let vectors = dispatch!(level, _simd => sum(block, &values));
+            assert_eq!(vectors, scalar, "{level:?}");
+        }
+        // The helper above must be able to fail: another order of summation is another sum.
+        let reversed: Vec<u32> = entries.iter().rev().copied().collect();
+        assert_ne!(sum(Block { entries: &reversed, ..block }, &values), scalar);
+    }
+
+    #[test]
+    fn terms_that_are_zero_change_no_bit() {
+        let planes = [Plane([0.3; 16]), Plane([0.7; 16]), Plane([0.11; 16])];
+        let values = [[0.1, 0.2, 0.3, 1.0], [0.0; 4], [0.5, 0.0, 0.9, 1.0]];
+        let all = Block { entries: &[0, 1, 2], planes: &planes, singles: &[] };
+        let lit = Block { entries: &[0, 2], planes: &[planes[0], planes[2]], singles: &[] };
+        assert_eq!(sum(all, &values), sum(lit, &values));
+    }
+}
