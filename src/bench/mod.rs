@@ -274,12 +274,13 @@ fn terms_per_pixel(transport: &Transport) -> Value {
         for block in 0..TILE_BLOCKS {
             let from = tile.starts[block] as usize;
             let (_, planes) = tile.block(block);
-            let pixel = |lane| transport.layout.pixel(Place { tile: index, block, lane });
-            for lane in (0..LANES).filter(|&lane| pixel(lane).is_some()) {
-                let stored = |(i, p): (usize, &crate::fold::transport::Plane)| {
-                    p.0[lane] != 0.0 || highlight[from + i][lane]
-                };
-                counts.push(planes.iter().enumerate().filter(|p| stored(*p)).count() as u32);
+            for lane in 0..LANES {
+                if transport.layout.pixel(Place { tile: index, block, lane }).is_some() {
+                    let stored = |(i, p): (usize, &crate::fold::transport::Plane)| {
+                        p.0[lane] != 0.0 || highlight[from + i][lane]
+                    };
+                    counts.push(planes.iter().enumerate().filter(|p| stored(*p)).count() as u32);
+                }
             }
         }
     }
