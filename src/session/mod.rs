@@ -173,7 +173,8 @@ impl Session {
         if let Some(what) = change.moves_rays {
             return Some(format!("{what} moves rays"));
         }
-        if !change.refold.is_empty() && self.transport.tiles.iter().any(|t| t.highlights.is_none()) {
+        if !change.refold.is_empty() && self.transport.tiles.iter().any(|t| t.highlights.is_none())
+        {
             return Some("highlight lists were released for memory".into());
         }
         if change.terms {
