@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::watch::watched;
 use super::{Common, Failure, print, read_scene, say, set, write_text};
-use crate::film::write::{Format, picture};
+use crate::film::write::{Format, check_writable, picture};
 use crate::forest::grow::RayCounts;
 use crate::scene::write;
 use crate::session::{EditReport, Session};
@@ -39,6 +39,7 @@ pub(crate) struct Render {
 impl Render {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let format = Format::of(&self.output, self.bits == "16").map_err(Failure::input)?;
+        check_writable(&self.output).map_err(Failure::job)?;
         let mut scene = read_scene(&self.scene)?;
         let options = self.common.apply(&mut scene)?;
         for assignment in &self.set {

@@ -73,6 +73,21 @@ pub fn atomically(
     write: impl FnOnce(&mut dyn WriteSeek) -> Result<(), String>,
 ) -> Result<(), WriteError> {
     let fail = |cause: String| WriteError { path: path.into(), cause };
+    let mut out = BufWriter::new(beside(path)?);
+    write(&mut out).map_err(&fail)?;
+    let file = out.into_inner().map_err(|e| fail(e.to_string()))?;
+    file.persist(path).map_err(|e| fail(e.error.to_string()))?;
+    Ok(())
+}
+
+/// Whether a file can be written there: asked before a long job, so that its result is not lost.
+pub fn check_writable(path: &Path) -> Result<(), WriteError> {
+    beside(path).map(drop)
+}
+
+/// A file of no lasting name in the folder of `path`; it is removed unless it is renamed.
+fn beside(path: &Path) -> Result<tempfile::NamedTempFile, WriteError> {
+    let fail = |cause: String| WriteError { path: path.into(), cause };
     let folder = match path.parent() {
         Some(p) if !p.as_os_str().is_empty() => p,
         _ => Path::new("."),
@@ -80,16 +95,14 @@ pub fn atomically(
     if path.is_dir() {
         return Err(fail("it is a folder".into()));
     }
+    if !folder.is_dir() {
+        return Err(fail(format!("there is no folder {}", folder.display())));
+    }
     let mut builder = tempfile::Builder::new();
     builder.prefix(".rayforest-").suffix(".part");
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let file = builder.tempfile_in(folder).map_err(|e| fail(e.to_string()))?;
-    let mut out = BufWriter::new(file);
-    write(&mut out).map_err(&fail)?;
-    let file = out.into_inner().map_err(|e| fail(e.to_string()))?;
-    file.persist(path).map_err(|e| fail(e.error.to_string()))?;
-    Ok(())
+    builder.tempfile_in(folder).map_err(|e| fail(format!("{} ({})", e.kind(), folder.display())))
 }
 
 /// Where picture bytes go.
