@@ -69,7 +69,7 @@ bulb = { sphere = { center = [0.2, -1.6, 0.8], radius = 0.7 }, material = "glass
 cube = { box = { min = [0, 0, 0], max = [0.8, 0.8, 1.2] }, material = "plain" }
 screen = { polygon = { points = [[-3, 3, 0], [3, 3, 0], [3, 3, 2], [-3, 3, 2]] }, material = "lamp" }
 ring = { knot = { turns = [2, 3], tube = 0.3, segments = [30, 8] }, material = "brass", scale = 0.4, translate = [1.6, -1, 0.6] }
-flake = { sphereflake = { center = [-1.9, -1.4, 0.5], radius = 0.3, levels = 2 }, material = "mirror" }
+flake = { sphereflake = { center = [-1.15, -1.5, 0.8], radius = 0.3, levels = 2 }, material = "mirror" }
 "#;
 
 /// A parameter and what some values of it, set one after another, cost. `*` stands for any name,

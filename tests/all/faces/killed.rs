@@ -9,18 +9,8 @@ use super::{decode_png, folder_with_scene, names_in, rayforest, succeed};
 use crate::exact::random::Random;
 
 /// A picture that takes a while to write.
-const LARGE: [&str; 10] = [
-    "render",
-    "scene.toml",
-    "-o",
-    "a.png",
-    "--bits",
-    "16",
-    "--size",
-    "1500x1000",
-    "--samples",
-    "1",
-];
+const LARGE: [&str; 10] =
+    ["render", "scene.toml", "-o", "a.png", "--bits", "16", "--size", "800x500", "--samples", "1"];
 
 /// What a kill left under the name of the output.
 #[derive(Debug, PartialEq)]
@@ -59,7 +49,7 @@ fn killed_at_any_moment_it_leaves_no_half_picture() {
     let whole = whole_run(folder.path());
     let mut random = Random(7);
     let mut seen = [0; 3];
-    for round in 0..30 {
+    for round in 0..16 {
         let old: &[u8] = if round % 2 == 0 { b"" } else { b"an older file" };
         match old {
             [] => drop(std::fs::remove_file(&output)),
