@@ -92,21 +92,30 @@ fn less_than_the_matrix_is_refused_and_says_how_much() {
 
 #[test]
 fn an_edit_that_fits_when_traced_afresh_fits_after_any_history() {
-    // The old trees fill the budget; the new matrix needs much of their place.
-    let mut flat = shiny();
-    set(&mut flat, "trace.depth", "0");
-    set(&mut flat, "trace.samples", "16");
-    let [matrix, lists, trees] = needs(&open(&flat, 2));
-    let deep = shiny();
-    let [deep_matrix, ..] = needs(&open(&deep, 2));
-    let budget = (matrix + lists + trees * 3 / 4).max(deep_matrix);
-    let mut session = within(&flat, budget).unwrap();
-    assert!(session.forest().released() < session.forest().tiles.len());
-    let afresh = within(&deep, budget).unwrap();
-    let report = session.edit(deep, &Progress::default()).unwrap();
+    let [low, high] = low_and_high();
+    let budget = needs(&open(&low, 2)).iter().sum();
+    let mut session = within(&low, budget).unwrap();
+    assert_eq!(session.forest().released(), 0, "the budget is filled with trees");
+    let afresh = within(&high, budget).unwrap();
+    let report = session.edit(high, &Progress::default()).unwrap();
     assert_eq!(report.class, Class::Retrace);
-    assert_same_picture(&session, &afresh, "a deep picture after a flat one");
-    assert_eq!(lists_released(&session) > 0, lists_released(&afresh) > 0, "lists kept");
+    assert_same_picture(&session, &afresh, "one after the other");
+    assert_eq!(lists_released(&session), lists_released(&afresh), "highlight lists");
+}
+
+/// Two views: the first has its trees in the lower tiles, the second its matrix in the upper ones.
+fn low_and_high() -> [Scene; 2] {
+    let mut low = shiny();
+    set(&mut low, "picture.size", "[480, 128]");
+    set(&mut low, "camera.target", "[0.25, 0, 2.6]");
+    set(&mut low, "trace.depth", "0");
+    set(&mut low, "trace.samples", "16");
+    set(&mut low, "lights.key.point", "[0, 0, -50]");
+    let mut high = shiny();
+    set(&mut high, "picture.size", "[480, 128]");
+    set(&mut high, "camera.target", "[0.25, 0, -1.4]");
+    set(&mut high, "solids.floor.plane.offset", "-40");
+    [low, high]
 }
 
 #[test]
