@@ -178,14 +178,12 @@ pub(crate) fn set(scene: &mut Scene, name: &str, value: &str, option: &str) -> R
 }
 
 /// A line of results.
-#[expect(clippy::print_stdout, reason = "this is the face that prints")]
 pub(crate) fn print(line: &str) {
     // A reader that closed the pipe has had enough.
     let _ = writeln!(std::io::stdout(), "{line}");
 }
 
 /// A message for the person.
-#[expect(clippy::print_stderr, reason = "this is the face that prints")]
 pub(crate) fn say(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }
