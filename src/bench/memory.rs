@@ -21,9 +21,10 @@ pub(super) fn read_and_write(pool: &ThreadPool, transport: &Transport, film: &mu
 #[inline(always)]
 fn touch(tile: &TransportTile, blocks: &mut [FilmBlock]) {
     let ids = tile.entries.iter().chain(&tile.terms).fold(0u32, |a, b| a ^ b);
+    let ids = tile.singles.iter().fold(ids, |a, s| a ^ s.entry() as u32 ^ s.coefficient.to_bits());
     for (block, out) in blocks.iter_mut().enumerate() {
         let mut sum = [0.0f32; LANES];
-        for Plane(plane) in tile.block(block).1 {
+        for Plane(plane) in tile.block(block).planes {
             for (s, p) in sum.iter_mut().zip(plane) {
                 *s += p;
             }

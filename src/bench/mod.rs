@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use crate::film::layout::{LANES, Place, TILE_BLOCKS};
 use crate::film::{Film, Frame};
-use crate::fold::transport::Transport;
+use crate::fold::transport::{HighlightList, Transport};
 use crate::forest::grow::RayCounts;
 use crate::progress::Progress;
 use crate::scene::path::{parameters, set};
@@ -267,19 +267,23 @@ impl Random {
 fn terms_per_pixel(transport: &Transport) -> Value {
     let mut counts = Vec::with_capacity(transport.layout.pixels() as usize);
     for (index, tile) in transport.tiles.iter().enumerate() {
-        let mut highlight = vec![[false; LANES]; tile.planes.len()];
+        let mut masks: Vec<u32> = tile.planes.iter().map(|p| nonzero_lanes(&p.0)).collect();
         for list in tile.highlights.iter().flat_map(|h| &h.lists) {
-            highlight[list.plane as usize] = list.counts.map(|c| c > 0);
+            if list.at & HighlightList::SINGLE == 0 {
+                masks[list.at as usize] |= u32::from(list.mask);
+            }
         }
         for block in 0..TILE_BLOCKS {
-            let from = tile.starts[block] as usize;
-            let (_, planes) = tile.block(block);
-            for lane in 0..LANES {
+            let (from, to) =
+                (tile.starts[block].plane as usize, tile.starts[block + 1].plane as usize);
+            let mut lanes = [0u32; LANES];
+            for single in tile.block(block).singles {
+                lanes[single.lane()] += 1;
+            }
+            for (lane, &singles) in lanes.iter().enumerate() {
                 if transport.layout.pixel(Place { tile: index, block, lane }).is_some() {
-                    let stored = |(i, p): (usize, &crate::fold::transport::Plane)| {
-                        p.0[lane] != 0.0 || highlight[from + i][lane]
-                    };
-                    counts.push(planes.iter().enumerate().filter(|p| stored(*p)).count() as u32);
+                    let planes = masks[from..to].iter().filter(|&&m| m >> lane & 1 != 0).count();
+                    counts.push(singles + planes as u32);
                 }
             }
         }
@@ -288,6 +292,10 @@ fn terms_per_pixel(transport: &Transport) -> Value {
     let mean = counts.iter().map(|&c| f64::from(c)).sum::<f64>() / counts.len() as f64;
     let at = |share: f64| counts[((counts.len() as f64 * share) as usize).min(counts.len() - 1)];
     json!({ "mean": mean, "median": at(0.5), "p99": at(0.99) })
+}
+
+fn nonzero_lanes(plane: &[f32; LANES]) -> u32 {
+    plane.iter().enumerate().fold(0, |mask, (i, &c)| mask | u32::from(c != 0.0) << i)
 }
 
 fn distinct_terms(transport: &Transport) -> usize {

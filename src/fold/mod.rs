@@ -6,7 +6,9 @@ pub mod transport;
 pub mod trie;
 
 use highlight::HighlightPower;
-use transport::{HighlightList, Highlights, Plane, TransportTile};
+use transport::{
+    BlockStart, HighlightList, Highlights, Plane, SPARSE_LANES, Single, TransportTile,
+};
 use trie::{Marks, ROOT, Trie};
 
 use crate::film::layout::LANES;
@@ -31,6 +33,9 @@ pub struct Folder {
     /// Trie id and coefficients of every slot, block after block.
     ids: Vec<u32>,
     planes: Vec<Plane>,
+    masks: Vec<u16>,
+    /// Where a slot's coefficients were stored; filled as the tile is finished.
+    places: Vec<u32>,
     starts: Vec<u32>,
     highlights: Vec<HighlightSample>,
     highlight_starts: Vec<u32>,
@@ -71,6 +76,8 @@ impl Folder {
         self.stamp = 0;
         self.ids.clear();
         self.planes.clear();
+        self.masks.clear();
+        self.places.clear();
         self.starts.clear();
         self.starts.push(0);
         self.highlights.clear();
@@ -135,6 +142,7 @@ impl Folder {
             let factor = Factor::new(Kind::Specular, node.material, node.slot);
             let specular = self.find(arriving, factor);
             let slot = self.slot(specular);
+            self.masks[slot as usize] |= 1 << (lane & (LANES - 1));
             self.highlights.push(HighlightSample {
                 slot,
                 material: node.material,
@@ -201,6 +209,8 @@ impl Folder {
         self.slots[id as usize] = (self.stamp, slot);
         self.ids.push(id);
         self.planes.push(Plane::default());
+        self.masks.push(0);
+        self.places.push(0);
         self.trie.mark(id, Marks::TERM);
         slot
     }
@@ -209,6 +219,7 @@ impl Folder {
     fn add(&mut self, id: u32, lane: usize, value: f32) {
         let slot = self.slot(id);
         self.planes[slot as usize].0[lane & (LANES - 1)] += value;
+        self.masks[slot as usize] |= 1 << (lane & (LANES - 1));
     }
 
     /// Ends a tile: puts its terms in canonical order, computes its highlights, and fills `reuse`.
@@ -218,45 +229,58 @@ impl Folder {
         &mut self,
         mut reuse: TransportTile,
         weight: f32,
-        shininess: &[f32],
+        shininess: &[Option<f32>],
     ) -> Folded<'_> {
         let ranks = self.trie.canonical_ranks();
         let local = self.dictionary(&ranks, &mut reuse);
-        reuse.starts.clear();
-        reuse.starts.extend_from_slice(&self.starts);
-        reuse.entries.clear();
-        reuse.entries.reserve_exact(self.ids.len());
-        reuse.planes.clear();
-        reuse.planes.reserve_exact(self.ids.len());
         let mut highlights = reuse.highlights.take().unwrap_or_default();
-        highlights.lists.clear();
-        highlights.log2_cosines.clear();
+        highlights.clear();
         highlights.log2_cosines.reserve_exact(self.highlights.len());
+        reuse.starts.clear();
+        reuse.starts.push(BlockStart::default());
+        reuse.entries.clear();
+        reuse.planes.clear();
+        reuse.singles.clear();
+        let lanes = self.masks.iter().map(|m| m.count_ones());
+        let (few, many): (Vec<u32>, Vec<u32>) = lanes.partition(|&lanes| lanes <= SPARSE_LANES);
+        reuse.entries.reserve_exact(many.len());
+        reuse.planes.reserve_exact(many.len());
+        reuse.singles.reserve_exact(few.iter().sum::<u32>() as usize);
         let mut order = Vec::new();
-        let mut place = vec![0u32; self.ids.len()];
         for block in 0..self.starts.len() - 1 {
             let slots = self.starts[block]..self.starts[block + 1];
             order.clear();
             order.extend(slots.map(|slot| (local[self.ids[slot as usize] as usize], slot)));
             order.sort_unstable();
             for &(entry, slot) in &order {
-                place[slot as usize] = reuse.planes.len() as u32;
-                reuse.entries.push(entry);
-                let Plane(sum) = self.planes[slot as usize];
-                reuse.planes.push(Plane(sum.map(|c| c * weight)));
+                self.places[slot as usize] = self.store(entry, slot as usize, weight, &mut reuse);
             }
-            self.sort_highlights(block, &place, &mut highlights);
+            reuse.starts.push(BlockStart {
+                plane: reuse.planes.len() as u32,
+                single: reuse.singles.len() as u32,
+            });
+            self.sort_highlights(block, &mut highlights);
         }
-        let mut from = 0;
-        for list in &highlights.lists {
-            let to = from + list.samples();
-            let samples = &highlights.log2_cosines[from..to];
-            let exponent = shininess[list.material as usize];
-            reuse.planes[list.plane as usize] = self.power.plane(list, samples, exponent, weight);
-            from = to;
-        }
+        highlights.lists.shrink_to_fit();
+        highlights.counts.shrink_to_fit();
+        self.power.fold(&mut reuse, &highlights, shininess, weight);
         reuse.highlights = Some(highlights);
         Folded { trie: &self.trie, tile: reuse }
+    }
+
+    /// Stores a slot's coefficients as a plane or one by one; where they are.
+    fn store(&self, entry: u32, slot: usize, weight: f32, tile: &mut TransportTile) -> u32 {
+        let Plane(sums) = self.planes[slot];
+        let mask = u32::from(self.masks[slot]);
+        if mask.count_ones() > SPARSE_LANES {
+            tile.entries.push(entry);
+            tile.planes.push(Plane(sums.map(|c| c * weight)));
+            return tile.planes.len() as u32 - 1;
+        }
+        let at = tile.singles.len() as u32;
+        let lanes = (0..LANES).filter(|i| mask >> i & 1 != 0);
+        tile.singles.extend(lanes.map(|i| Single::new(entry, i, sums[i] * weight)));
+        at | HighlightList::SINGLE
     }
 
     /// Fills `tile.terms` with the ids that have coefficients, in canonical order, and gives for
@@ -274,21 +298,21 @@ impl Folder {
         local
     }
 
-    /// Sorts a block's highlight samples into lists, by plane, then lane, then sample.
-    fn sort_highlights(&mut self, block: usize, place: &[u32], highlights: &mut Highlights) {
+    /// Sorts a block's highlight samples into lists, by slot, then lane, then sample.
+    fn sort_highlights(&mut self, block: usize, highlights: &mut Highlights) {
         let range = self.highlight_starts[block]..self.highlight_starts[block + 1];
         let samples = &mut self.highlights[range.start as usize..range.end as usize];
-        // Samples were found lane after lane: a stable sort by plane keeps lanes and samples.
-        samples.sort_by_key(|s| place[s.slot as usize]);
-        for s in samples.iter() {
-            let plane = place[s.slot as usize];
-            if highlights.lists.last().is_none_or(|l| l.plane != plane) {
-                let counts = [0; LANES];
-                highlights.lists.push(HighlightList { plane, material: s.material, counts });
+        // Samples were found lane after lane: a stable sort by slot keeps lanes and samples.
+        samples.sort_by_key(|s| s.slot);
+        for list in samples.chunk_by(|a, b| a.slot == b.slot) {
+            let mut mask = 0u16;
+            for lane in list.chunk_by(|a, b| a.lane == b.lane) {
+                mask |= 1 << lane[0].lane;
+                highlights.counts.push(lane.len() as u16);
             }
-            let last = highlights.lists.len() - 1;
-            highlights.lists[last].counts[s.lane as usize] += 1;
-            highlights.log2_cosines.push(s.log2_cosine);
+            let at = self.places[list[0].slot as usize];
+            highlights.lists.push(HighlightList { at, material: list[0].material, mask });
+            highlights.log2_cosines.extend(list.iter().map(|s| s.log2_cosine));
         }
     }
 }

@@ -118,7 +118,8 @@ impl Primitives {
     /// The corners of a triangle.
     #[inline(always)]
     pub(super) fn triangle_corners(&self, triangle: &Triangle) -> [&Corner; 3] {
-        triangle.corners.map(|v| &self.corners[v as usize])
+        let [a, b, c] = triangle.corners;
+        [&self.corners[a as usize], &self.corners[b as usize], &self.corners[c as usize]]
     }
 
     /// Memory held, in bytes.
@@ -278,22 +279,45 @@ fn newell_normal(points: &[DVec3]) -> DVec3 {
 
 /// Whether every edge is shared by exactly two triangles that run along it in opposite directions.
 fn is_closed(triangles: &[[u32; 3]], progress: &Progress) -> Result<bool, Cancelled> {
-    let mut edges: Vec<(u32, u32, bool)> = Vec::with_capacity(triangles.len() * 3);
-    for [a, b, c] in triangles.iter().copied() {
-        if a == b || b == c || c == a {
-            continue;
-        }
-        edges.extend([(a, b), (b, c), (c, a)].map(|(p, q)| (p.min(q), p.max(q), p < q)));
-    }
-    progress.check()?;
-    edges.sort_unstable();
-    progress.check()?;
-    let opposite = |pair: &[(u32, u32, bool)]| match pair {
-        [(a, b, false), (c, d, true)] => a == c && b == d,
-        _ => false,
+    let edges = |[a, b, c]: [u32; 3]| {
+        let degenerate = a == b || b == c || c == a;
+        [(a, b), (b, c), (c, a)].into_iter().filter(move |_| !degenerate)
     };
-    let repeated = edges.windows(2).any(|pair| pair[0] == pair[1]);
-    Ok(!edges.is_empty() && !repeated && edges.chunks(2).all(opposite))
+    // Edges in buckets by their lower vertex: where each bucket ends, then what is in it.
+    let vertices = triangles.iter().flatten().max().map_or(0, |v| *v as usize + 1);
+    let mut ends = vec![0usize; vertices];
+    for chunk in triangles.chunks(CHECK_EVERY) {
+        progress.check()?;
+        chunk.iter().copied().flat_map(edges).for_each(|(p, q)| ends[p.min(q) as usize] += 1);
+    }
+    let mut total = 0;
+    for end in &mut ends {
+        (*end, total) = (total, total + *end);
+    }
+    let mut bucketed = vec![(0, false); total];
+    for chunk in triangles.chunks(CHECK_EVERY) {
+        progress.check()?;
+        for (p, q) in chunk.iter().copied().flat_map(edges) {
+            let end = &mut ends[p.min(q) as usize];
+            bucketed[*end] = (p.max(q), p < q);
+            *end += 1;
+        }
+    }
+    let mut begin = 0;
+    for (i, end) in ends.into_iter().enumerate() {
+        if i % CHECK_EVERY == 0 {
+            progress.check()?;
+        }
+        let bucket = &mut bucketed[begin..end];
+        bucket.sort_unstable();
+        let opposite = |pair: &[(u32, bool)]| matches!(pair, [(a, false), (b, true)] if a == b);
+        let repeated = bucket.windows(2).any(|pair| pair[0] == pair[1]);
+        if repeated || !bucket.chunks(2).all(opposite) {
+            return Ok(false);
+        }
+        begin = end;
+    }
+    Ok(total > 0)
 }
 
 /// Six times the signed volume that a closed mesh encloses.

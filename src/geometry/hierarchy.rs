@@ -5,16 +5,13 @@ use glam::DVec3;
 use super::binary::{Aabb, BinaryNode, BinaryTree};
 use super::compile::{Item, Kind, Primitives};
 use super::packet::{Packets, WIDTH};
+use super::plan::Plan;
 use super::primitive::Form;
+use super::shear::point;
 use crate::progress::{Cancelled, Progress};
 
 /// Entries of a [`Stack`]; a power of two.
 pub(super) const STACK: usize = 512;
-
-/// Cost of a node, of a leaf, and of each primitive in it, in one unit: measured with `perf`.
-const NODE_COST: f32 = 1.0;
-const LEAF_COST: f32 = 0.9;
-const PRIMITIVE_COST: f32 = 0.12;
 
 /// Scratch for the queries of one thread, made once: zeroing one per ray costs a third.
 #[derive(Debug)]
@@ -280,10 +277,9 @@ fn box_about(all: &Primitives, item: Item, center: DVec3) -> [DVec3; 2] {
             let sphere = &all.spheres[index];
             around(sphere.center, DVec3::splat(sphere.radius))
         }
-        Kind::Triangle => box_of_points(
-            all.triangle_corners(&all.triangles[index])
-                .map(|&[x, y, z, _]| DVec3::new(x, y, z) - center),
-        ),
+        Kind::Triangle => {
+            box_of_points(all.triangle_corners(&all.triangles[index]).map(|c| point(c) - center))
+        }
         Kind::Shape => match &all.shapes[index].form {
             Form::Cuboid(corners) => corners.map(|c| c - center),
             Form::PlacedCuboid(placed, [min, max]) => {
@@ -293,9 +289,7 @@ fn box_about(all: &Primitives, item: Item, center: DVec3) -> [DVec3; 2] {
             Form::Ellipsoid(placed, middle, radius) => {
                 around(placed.point(*middle), placed.sphere_extent(*radius))
             }
-            Form::Polygon(corners, _) => {
-                box_of_points(corners.iter().map(|&[x, y, z, _]| DVec3::new(x, y, z) - center))
-            }
+            Form::Polygon(corners, _) => box_of_points(corners.iter().map(|c| point(c) - center)),
         },
         Kind::Plane => unreachable!("planes are not in the hierarchy"),
     }
@@ -305,112 +299,4 @@ fn box_of_points(points: impl IntoIterator<Item = DVec3>) -> [DVec3; 2] {
     points
         .into_iter()
         .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[lo, hi], p| [lo.min(p), hi.max(p)])
-}
-
-/// How the binary tree is cut into nodes of eight and leaves of up to eight primitives of one kind:
-/// the cheapest way, by dynamic programming (Ylitie, Karras and Laine, HPG 2017, section 3.1).
-struct Plan<'a> {
-    tree: &'a BinaryTree,
-    items: &'a [Item],
-    /// Per binary node: the cost of covering it with at most 1 … 7 children; `[0]` is unused.
-    costs: Vec<[f32; WIDTH]>,
-    /// Per binary node: of `k` children, how many go left; `[0]`: of the eight of its own node.
-    /// 0: the node itself is one child.
-    left_share: Vec<[u8; WIDTH]>,
-    /// Per binary node: the kind of a leaf made of it, if that is the cheapest single child.
-    leaf: Vec<Option<Kind>>,
-}
-
-impl Plan<'_> {
-    fn new<'a>(
-        tree: &'a BinaryTree,
-        items: &'a [Item],
-        progress: &Progress,
-    ) -> Result<Plan<'a>, Cancelled> {
-        let count = tree.nodes.len();
-        let mut plan = Plan {
-            tree,
-            items,
-            costs: vec![[0.0; WIDTH]; count],
-            left_share: vec![[0; WIDTH]; count],
-            leaf: vec![None; count],
-        };
-        for binary in (0..count).rev() {
-            progress.check()?;
-            plan.cover(binary);
-        }
-        Ok(plan)
-    }
-
-    /// Fills in a node whose descendants are filled in.
-    fn cover(&mut self, binary: usize) {
-        let node = &self.tree.nodes[binary];
-        let area = node.bounds.area().max(f32::MIN_POSITIVE);
-        let kind = self.kind_of(node);
-        let count = (node.end - node.begin) as f32;
-        let leaf_cost = area * (LEAF_COST + PRIMITIVE_COST * count);
-        if node.left == 0 {
-            self.leaf[binary] = kind;
-            self.costs[binary] = [leaf_cost; WIDTH];
-            return;
-        }
-        let (left, right) = (node.left as usize, node.left as usize + 1);
-        let spread = |costs: &[[f32; WIDTH]], total: usize| {
-            (1.max(total - (WIDTH - 1).min(total - 1))..total.min(WIDTH))
-                .map(|k| (costs[left][k] + costs[right][total - k], k as u8))
-                .fold((f32::INFINITY, 1), |best, new| if new.0 < best.0 { new } else { best })
-        };
-        let (below, share) = spread(&self.costs, WIDTH);
-        let inner_cost = area * NODE_COST + below;
-        self.left_share[binary][0] = share;
-        let is_leaf = kind.is_some() && leaf_cost <= inner_cost;
-        self.leaf[binary] = kind.filter(|_| is_leaf);
-        self.costs[binary][1] = if is_leaf { leaf_cost } else { inner_cost };
-        for total in 2..WIDTH {
-            let (cost, share) = spread(&self.costs, total);
-            let fewer = (self.costs[binary][total - 1], self.left_share[binary][total - 1]);
-            // The share of fewer children is kept as it is: `children` may leave places empty.
-            let (cost, share) = if cost < fewer.0 { (cost, share) } else { (fewer.0, 0) };
-            self.costs[binary][total] = cost;
-            self.left_share[binary][total] = share;
-        }
-    }
-
-    /// The kind of up to eight primitives of one kind.
-    fn kind_of(&self, node: &BinaryNode) -> Option<Kind> {
-        let order = &self.tree.order[node.begin as usize..node.end as usize];
-        let kind = |i: u32| self.items[i as usize].kind;
-        let first = kind(order[0]);
-        (order.len() <= WIDTH && order.iter().all(|i| kind(*i) == first)).then_some(first)
-    }
-
-    fn leaf_kind(&self, binary: u32) -> Option<Kind> {
-        self.leaf[binary as usize]
-    }
-
-    fn items_under(&self, binary: u32) -> impl Iterator<Item = u32> {
-        let node = &self.tree.nodes[binary as usize];
-        let order = &self.tree.order[node.begin as usize..node.end as usize];
-        order.iter().map(|i| self.items[*i as usize].index)
-    }
-
-    /// The children of the wide node made of a binary node.
-    fn children(&self, binary: u32) -> Vec<u32> {
-        let halves = |binary: u32, share: u8, total: usize| {
-            let left = self.tree.nodes[binary as usize].left;
-            [(left + 1, total - share as usize), (left, share as usize)]
-        };
-        let mut children = Vec::with_capacity(WIDTH);
-        let mut open = Vec::from(halves(binary, self.left_share[binary as usize][0], WIDTH));
-        while let Some((part, mut total)) = open.pop() {
-            while total > 1 && self.left_share[part as usize][total] == 0 {
-                total -= 1;
-            }
-            match total {
-                1 => children.push(part),
-                _ => open.extend(halves(part, self.left_share[part as usize][total], total)),
-            }
-        }
-        children
-    }
 }

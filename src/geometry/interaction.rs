@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::compile::{Compiled, Kind, NO_NORMAL, Primitives};
 use super::primitive::{Form, Plane, Sphere, cuboid_faces};
-use super::shear::{Crossing, Shear};
+use super::shear::{Crossing, Shear, point};
 use super::{Geometry, Hit, Interaction, Ray};
 
 /// Point, geometric normal and, if it differs, a shading normal of any length and side.
@@ -53,7 +53,7 @@ fn checker_slot(point: DVec3, size: f64) -> u8 {
 /// `n` as a unit vector on the side of `geometric`; `None` if it has no side.
 #[inline(always)]
 fn on_side_of(geometric: DVec3, n: DVec3) -> Option<DVec3> {
-    let n = n.try_normalize()?;
+    let n = unit(n)?;
     let side = n.dot(geometric);
     if side > 0.0 {
         Some(n)
@@ -62,6 +62,13 @@ fn on_side_of(geometric: DVec3, n: DVec3) -> Option<DVec3> {
     } else {
         None
     }
+}
+
+/// `v` at unit length, if it has a direction that f64 can square.
+#[inline(always)]
+fn unit(v: DVec3) -> Option<DVec3> {
+    let length2 = v.length_squared();
+    (length2 > 0.0 && length2 < f64::INFINITY).then_some(v / length2.sqrt())
 }
 
 #[inline(always)]
@@ -88,19 +95,21 @@ fn snap(point: DVec3, normal: DVec3, on_plane: DVec3) -> DVec3 {
 fn triangle_surface(all: &Primitives, index: usize, ray: &Ray, t: f64) -> Surface {
     let triangle = &all.triangles[index];
     let corners = all.triangle_corners(triangle);
-    let [a, b, c] = corners.map(|&[x, y, z, _]| DVec3::new(x, y, z));
+    let (a, b, c) = (point(corners[0]), point(corners[1]), point(corners[2]));
     let (e1, e2) = (b - a, c - a);
-    let normal = e1.cross(e2).try_normalize().unwrap_or(-ray.direction);
+    let normal = unit(e1.cross(e2)).unwrap_or(-ray.direction);
     let Some(Crossing { weights: [wa, wb, wc], .. }) = Shear::new(ray).triangle(corners) else {
         return (ray.origin + ray.direction * t, normal, None);
     };
-    let point = snap(a + (e1 * wb + e2 * wc), normal, a);
+    let at = snap(a + (e1 * wb + e2 * wc), normal, a);
     let normals = all.triangle_normals[index];
     if normals[0] == NO_NORMAL {
-        return (point, normal, None);
+        return (at, normal, None);
     }
-    let [na, nb, nc] = normals.map(|n| all.normals[n as usize]);
-    (point, normal, Some(na * wa + nb * wb + nc * wc))
+    let [na, nb, nc] = normals;
+    let (na, nb, nc) =
+        (all.normals[na as usize], all.normals[nb as usize], all.normals[nc as usize]);
+    (at, normal, Some(na * wa + nb * wb + nc * wc))
 }
 
 fn form_surface(form: &Form, ray: &Ray, t: f64) -> Surface {
@@ -120,11 +129,10 @@ fn form_surface(form: &Form, ray: &Ray, t: f64) -> Surface {
             (placed.point(center + out * *radius), placed.normal(out).normalize(), None)
         }
         Form::Polygon(corners, normal) => {
-            let [x, y, z, _] = corners[0];
-            let on_plane = DVec3::new(x, y, z);
+            let on_plane = point(&corners[0]);
             let from_corner = (ray.origin - on_plane) + ray.direction * t;
-            let point = on_plane + (from_corner - *normal * normal.dot(from_corner));
-            (snap(point, *normal, on_plane), *normal, None)
+            let at = on_plane + (from_corner - *normal * normal.dot(from_corner));
+            (snap(at, *normal, on_plane), *normal, None)
         }
     }
 }
@@ -160,9 +168,7 @@ impl Primitives {
         inside: bool,
         closed: bool,
     ) -> bool {
-        let corners = |index: usize| {
-            self.triangle_corners(&self.triangles[index]).map(|&[x, y, z, _]| DVec3::new(x, y, z))
-        };
+        let corners = |index: usize| self.triangle_corners(&self.triangles[index]).map(point);
         let size = |v: DVec3| v.abs().element_sum();
         let [p, q, r] = corners(left);
         let left_size = size(q - p) + size(r - p);

@@ -12,9 +12,12 @@ mod hierarchy;
 mod interaction;
 mod packet;
 mod placement;
+mod plan;
 mod primitive;
 mod query;
 mod shear;
+#[cfg(test)]
+mod testing;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

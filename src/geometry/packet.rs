@@ -7,6 +7,7 @@ use fearless_simd::{Simd, f32x8, prelude::*};
 
 use super::compile::Primitives;
 use super::hierarchy::Frame;
+use super::shear::point;
 use super::traverse::Beam;
 
 /// Lanes of a node or leaf.
@@ -99,7 +100,7 @@ impl Packets {
         };
         for (k, item) in items.enumerate() {
             let corners = all.triangle_corners(&all.triangles[item as usize]);
-            let [a, b, c] = corners.map(|&[x, y, z, _]| frame.local(glam::DVec3::new(x, y, z)));
+            let [a, b, c] = corners.map(|c| frame.local(point(c)));
             let mut size = 0.0;
             for axis in 0..3 {
                 packet.corner[axis][k] = a[axis] as f32;
@@ -140,13 +141,14 @@ impl SpherePacket {
     /// A bit for every sphere that the beam may meet up to `limit`.
     #[inline(always)]
     pub(super) fn candidates<S: Simd>(&self, simd: S, beam: &Beam<S>, limit: f32x8<S>) -> u32 {
-        let load = |lanes: &[f32; WIDTH]| f32x8::from_slice(simd, lanes);
-        let [x, y, z] = [0, 1, 2].map(|k| load(&self.center[k]) - beam.origin[k]);
+        let [x, y, z] = load3(simd, &self.center);
+        let [ox, oy, oz] = beam.origin;
+        let (x, y, z) = (x - ox, y - oy, z - oz);
         let [dx, dy, dz] = beam.direction;
         let along = x * dx + y * dy + z * dz;
         let (lx, ly, lz) = (x - along * dx, y - along * dy, z - along * dz);
         let off2 = lx * lx + ly * ly + lz * lz;
-        let radius = load(&self.radius);
+        let radius = load(simd, &self.radius);
         // Error of any position or distance above: the ray's, the centre's, and the arithmetic's.
         let error = (x.abs() + y.abs() + z.abs() + radius + beam.size) * MARGIN;
         let reach = radius + error;
@@ -165,11 +167,11 @@ impl TrianglePacket {
     /// undivided).
     #[inline(always)]
     pub(super) fn candidates<S: Simd>(&self, simd: S, beam: &Beam<S>, limit: f32x8<S>) -> u32 {
-        let load = |lanes: &[f32; WIDTH]| f32x8::from_slice(simd, lanes);
-        let [dx, dy, dz] = beam.direction;
-        let [ax, ay, az] = [0, 1, 2].map(|k| beam.origin[k] - load(&self.corner[k]));
-        let [px, py, pz] = [0, 1, 2].map(|k| load(&self.edges[0][k]));
-        let [qx, qy, qz] = [0, 1, 2].map(|k| load(&self.edges[1][k]));
+        let ([dx, dy, dz], [ox, oy, oz]) = (beam.direction, beam.origin);
+        let [cx, cy, cz] = load3(simd, &self.corner);
+        let (ax, ay, az) = (ox - cx, oy - cy, oz - cz);
+        let [px, py, pz] = load3(simd, &self.edges[0]);
+        let [qx, qy, qz] = load3(simd, &self.edges[1]);
         // d × q, a × p
         let (ex, ey, ez) = (dy * qz - dz * qy, dz * qx - dx * qz, dx * qy - dy * qx);
         let (fx, fy, fz) = (ay * pz - az * py, az * px - ax * pz, ax * py - ay * px);
@@ -178,14 +180,24 @@ impl TrianglePacket {
         let v = (dx * fx + dy * fy + dz * fz).copysign_by(det);
         let t = (qx * fx + qy * fy + qz * fz).copysign_by(det);
         let det = det.abs();
-        let error = load(&self.margin) * (ax.abs() + ay.abs() + az.abs() + beam.size);
-        let t_error = error * load(&self.size);
+        let error = load(simd, &self.margin) * (ax.abs() + ay.abs() + az.abs() + beam.size);
+        let t_error = error * load(simd, &self.size);
         let zero = f32x8::splat(simd, 0.0);
         let low = zero - error;
         let inside = u.simd_ge(low) & v.simd_ge(low) & (u + v).simd_le(det + error);
         let in_reach = t.simd_ge(zero - t_error) & t.simd_le(limit * (det + error) + t_error);
         (inside & in_reach).to_bitmask() as u32
     }
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, lanes: &[f32; WIDTH]) -> f32x8<S> {
+    f32x8::from_slice(simd, lanes)
+}
+
+#[inline(always)]
+fn load3<S: Simd>(simd: S, lanes: &[[f32; WIDTH]; 3]) -> [f32x8<S>; 3] {
+    [load(simd, &lanes[0]), load(simd, &lanes[1]), load(simd, &lanes[2])]
 }
 
 /// Multiplication by the sign of another number.

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::Ray;
 use super::placement::Placed;
-use super::shear::{Corner, Shear};
+use super::shear::{Corner, Shear, point};
 
 /// How the ray stands to the primitive that is asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -160,8 +160,7 @@ fn polygon_root(ray: &Ray, shear: &Shear, corners: &[Corner], normal: DVec3) -> 
     if !shear.polygon(corners) {
         return Roots::NONE;
     }
-    let [x, y, z, _] = corners[0];
-    let t = normal.dot(DVec3::new(x, y, z) - ray.origin) / normal.dot(ray.direction);
+    let t = normal.dot(point(&corners[0]) - ray.origin) / normal.dot(ray.direction);
     if t.is_finite() { Roots::one(t) } else { Roots::NONE }
 }
 

@@ -20,14 +20,20 @@ pub(super) fn corner(p: DVec3) -> Corner {
     [p.x, p.y, p.z, 0.0]
 }
 
+/// The point of a corner.
+#[inline(always)]
+pub(super) fn point(&[x, y, z, _]: &Corner) -> DVec3 {
+    DVec3::new(x, y, z)
+}
+
 /// A ray prepared for corners. `axis[2]` is the largest component of the direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shear {
     axis: [usize; 3],
     origin: [f64; 3],
     slope: [f64; 2],
-    /// The largest component of the direction.
-    depth: f64,
+    /// One over the largest component of the direction.
+    per_depth: f64,
 }
 
 /// A corner in ray space; z is not yet divided by the direction.
@@ -62,11 +68,12 @@ impl Shear {
         };
         let (x, y) = ([1, 2, 0][z], [2, 0, 1][z]);
         let o = ray.origin.to_array();
+        let per_depth = 1.0 / d[z];
         Shear {
             axis: [x, y, z],
             origin: [o[x], o[y], o[z]],
-            slope: [d[x] / d[z], d[y] / d[z]],
-            depth: d[z],
+            slope: [d[x] * per_depth, d[y] * per_depth],
+            per_depth,
         }
     }
 
@@ -108,7 +115,7 @@ impl Shear {
     fn crossing(&self, [a, b, c]: [Seen; 3], [u, v, w]: [f64; 3]) -> Option<Crossing> {
         let scale = 1.0 / (u + v + w);
         let weights = [u * scale, v * scale, w * scale];
-        let t = (weights[0] * a.z + weights[1] * b.z + weights[2] * c.z) / self.depth;
+        let t = (weights[0] * a.z + weights[1] * b.z + weights[2] * c.z) * self.per_depth;
         t.is_finite().then_some(Crossing { t, weights })
     }
 

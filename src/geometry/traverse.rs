@@ -2,6 +2,8 @@
 
 use fearless_simd::{Simd, f32x8, prelude::*};
 
+use glam::DVec3;
+
 use super::compile::Kind;
 use super::hierarchy::{Child, Frame, Node, STACK, Stack, Target};
 use super::packet::{ShapePacket, SpherePacket, TrianglePacket, WIDTH};
@@ -60,7 +62,6 @@ struct Departure {
 impl<S: Simd> Beam<S> {
     #[inline(always)]
     fn new(simd: S, frame: &Frame, ray: &Ray) -> Beam<S> {
-        let splat = |x: f32| f32x8::splat(simd, x);
         let (o, d) = (frame.local(ray.origin), ray.direction);
         // The frame's content is within √3 < 2 of its origin: skip the way to the ball of radius 2.
         let start = (-o.dot(d) - 2.0).max(0.0);
@@ -68,24 +69,18 @@ impl<S: Simd> Beam<S> {
         let size = 1.0 + moved.abs().element_sum();
         // f64 roundings count once the origin is very far away.
         let padding = PADDING * size + o.abs().element_sum() * 1e-14;
-        let (mut reciprocal, mut near, mut far) =
-            ([splat(0.0); 3], [splat(0.0); 3], [splat(0.0); 3]);
-        let mut nearer = [0; 3];
-        for axis in 0..3 {
-            let component = d[axis].abs().max(LEAST_COMPONENT).copysign(d[axis]);
-            let r = 1.0 / component;
-            reciprocal[axis] = splat(r as f32);
-            near[axis] = splat((moved[axis] * r + padding * r.abs()) as f32);
-            far[axis] = splat((moved[axis] * r - padding * r.abs()) as f32);
-            nearer[axis] = usize::from(component < 0.0);
-        }
+        let away = DVec3::new(away(d.x), away(d.y), away(d.z));
+        let r = away.recip();
+        let at = moved * r;
+        let margin = r.abs() * padding;
+        let nearer = [usize::from(r.x < 0.0), usize::from(r.y < 0.0), usize::from(r.z < 0.0)];
         Beam {
-            origin: [0, 1, 2].map(|k| splat(moved[k] as f32)),
-            direction: [0, 1, 2].map(|k| splat(d[k] as f32)),
-            size: splat((size + o.abs().element_sum() * 1e-9) as f32),
-            reciprocal,
-            near,
-            far,
+            origin: splat3(simd, moved),
+            direction: splat3(simd, d),
+            size: f32x8::splat(simd, (size + o.abs().element_sum() * 1e-9) as f32),
+            reciprocal: splat3(simd, r),
+            near: splat3(simd, at + margin),
+            far: splat3(simd, at - margin),
             nearer,
             start: start / frame.scale,
             scale: frame.scale,
@@ -103,13 +98,16 @@ impl<S: Simd> Beam<S> {
     /// The children of a node that the ray may meet up to `limit`, and how far away each is at least.
     #[inline(always)]
     fn meet(&self, simd: S, node: &Node, limit: f32x8<S>) -> (u32, f32x8<S>) {
-        let plane = |axis: usize, which: usize| {
-            f32x8::from_slice(simd, &node.bounds[axis][which & 1]) * self.reciprocal[axis]
-        };
-        let [nx, ny, nz] = [0, 1, 2].map(|k| plane(k, self.nearer[k]) - self.near[k]);
-        let [fx, fy, fz] = [0, 1, 2].map(|k| plane(k, self.nearer[k] ^ 1) - self.far[k]);
-        let near = nx.max(ny).max(nz.max(0.0));
-        let far = fx.min(fy).min(fz.min(limit));
+        let ([x, y, z], [nx, ny, nz]) = (&node.bounds, self.nearer);
+        let ([rx, ry, rz], [ox, oy, oz], [px, py, pz]) = (self.reciprocal, self.near, self.far);
+        let near_x = f32x8::from_slice(simd, &x[nx & 1]) * rx - ox;
+        let near_y = f32x8::from_slice(simd, &y[ny & 1]) * ry - oy;
+        let near_z = f32x8::from_slice(simd, &z[nz & 1]) * rz - oz;
+        let far_x = f32x8::from_slice(simd, &x[!nx & 1]) * rx - px;
+        let far_y = f32x8::from_slice(simd, &y[!ny & 1]) * ry - py;
+        let far_z = f32x8::from_slice(simd, &z[!nz & 1]) * rz - pz;
+        let near = near_x.max(near_y).max(near_z.max(0.0));
+        let far = far_x.min(far_y).min(far_z.min(limit));
         (near.simd_le(far).to_bitmask() as u32, near)
     }
 }
@@ -190,17 +188,21 @@ impl Geometry {
             Target::Node => {}
             Target::Spheres => {
                 let packet: &SpherePacket = &packets.spheres[index];
-                each_lane(packet.candidates(simd, beam, limits), &packet.items, |item| {
-                    self.sphere(item, walk, query);
-                    query.is_done()
-                });
+                let mut mask = packet.candidates(simd, beam, limits);
+                while mask != 0 && !query.is_done() {
+                    let lane = mask.trailing_zeros() as usize & (WIDTH - 1);
+                    mask &= mask - 1;
+                    self.sphere(packet.items[lane] as usize, walk, query);
+                }
             }
             Target::Triangles => {
                 let packet: &TrianglePacket = &packets.triangles[index];
-                each_lane(packet.candidates(simd, beam, limits), &packet.items, |item| {
-                    self.triangle(item, walk, query);
-                    query.is_done()
-                });
+                let mut mask = packet.candidates(simd, beam, limits);
+                while mask != 0 && !query.is_done() {
+                    let lane = mask.trailing_zeros() as usize & (WIDTH - 1);
+                    mask &= mask - 1;
+                    self.triangle(packet.items[lane] as usize, walk, query);
+                }
             }
             Target::Shapes => {
                 let packet: &ShapePacket = &packets.shapes[index];
@@ -230,10 +232,8 @@ impl Geometry {
         let Departure { primitive: left, mesh, start, closed } = walk.leaving;
         if primitive >= mesh.0 && primitive < mesh.1 {
             let left_item = item.wrapping_add(left as usize).wrapping_sub(primitive as usize);
-            let noise = || {
-                all.is_departure_noise(walk.ray, [left_item, item], start == Start::Inside, closed)
-            };
-            if primitive == left || noise() {
+            let (pair, inside) = ([left_item, item], start == Start::Inside);
+            if primitive == left || all.is_departure_noise(walk.ray, pair, inside, closed) {
                 return;
             }
         }
@@ -296,16 +296,15 @@ impl Departure {
     }
 }
 
-/// Calls `decide` for every set bit until it says stop.
+/// A direction component kept away from zero.
 #[inline(always)]
-fn each_lane(mut mask: u32, items: &[u32; WIDTH], mut decide: impl FnMut(usize) -> bool) {
-    while mask != 0 {
-        let lane = mask.trailing_zeros() as usize;
-        mask &= mask - 1;
-        if decide(items[lane & (WIDTH - 1)] as usize) {
-            return;
-        }
-    }
+fn away(component: f64) -> f64 {
+    component.abs().max(LEAST_COMPONENT).copysign(component)
+}
+
+#[inline(always)]
+fn splat3<S: Simd>(simd: S, v: DVec3) -> [f32x8<S>; 3] {
+    [f32x8::splat(simd, v.x as f32), f32x8::splat(simd, v.y as f32), f32x8::splat(simd, v.z as f32)]
 }
 
 /// Offers the crossings with `t > 0`; only the first one unless the query wants all.
@@ -337,18 +336,17 @@ fn next_child<S: Simd, Q: Query>(
         return node.children[first];
     }
     let near = near.as_array();
-    let entry =
-        |lane: usize| u64::from(near[lane].to_bits()) << 32 | u64::from(node.children[lane].0);
     let base = *top;
-    let mut best = entry(first);
+    let mut best = entry(node, near, first);
     while mask != 0 {
-        let mut other = entry(mask.trailing_zeros() as usize & (WIDTH - 1));
+        let mut other = entry(node, near, mask.trailing_zeros() as usize);
         mask &= mask - 1;
         if other < best {
             std::mem::swap(&mut other, &mut best);
         }
         let mut place = *top;
-        while place > base && entries[(place - 1) & (STACK - 1)] < other {
+        // All children must be asked when everything counts: their order is of no use then.
+        while !Q::ALL && place > base && entries[(place - 1) & (STACK - 1)] < other {
             entries[place & (STACK - 1)] = entries[(place - 1) & (STACK - 1)];
             place -= 1;
         }
@@ -356,4 +354,10 @@ fn next_child<S: Simd, Q: Query>(
         *top += 1;
     }
     Child(best as u32)
+}
+
+#[inline(always)]
+fn entry(node: &Node, near: &[f32; WIDTH], lane: usize) -> u64 {
+    let lane = lane & (WIDTH - 1);
+    u64::from(near[lane].to_bits()) << 32 | u64::from(node.children[lane].0)
 }

@@ -103,7 +103,7 @@ fn terms(
     covered: [bool; LANES],
     lane: usize,
 ) -> (Vec<TermShare>, Rgb) {
-    let shininess: Vec<f32> = scene.materials.iter().map(|m| m.shininess).collect();
+    let shininess: Vec<_> = scene.materials.iter().map(|m| Some(m.shininess)).collect();
     let mut folder = Folder::default();
     folder.begin_tile();
     folder.block(&mut trees.read(0), covered, scene.trace.samples);
@@ -111,20 +111,23 @@ fn terms(
     let folded = folder.finish_tile(Default::default(), weight, &shininess);
     let mut values = TermValues::default();
     values.evaluate(folded.trie, &FactorValues::new(scene));
-    let mut light = Rgb::BLACK;
-    let mut shares = Vec::new();
-    let (entries, planes) = folded.tile.block(0);
-    for (&entry, plane) in entries.iter().zip(planes) {
-        let id = folded.tile.terms[entry as usize];
+    let block = folded.tile.block(0);
+    let planes = block.entries.iter().zip(block.planes);
+    let mut rows: Vec<_> = planes.map(|(&e, plane)| (e as usize, plane.0[lane])).collect();
+    let dense = rows.len();
+    let singles = block.singles.iter().filter(|s| s.lane() == lane);
+    rows.extend(singles.map(|s| (s.entry(), s.coefficient)));
+    let shares = rows.iter().map(|&(entry, coefficient)| {
+        let id = folded.tile.terms[entry];
         let [r, g, b, _] = values.values[id as usize];
-        let coefficient = plane.0[lane];
         let share = Rgb([r, g, b]) * coefficient;
-        light = light + share;
-        if coefficient != 0.0 {
-            shares.push(TermShare { factors: folded.trie.factors(id), coefficient, share });
-        }
-    }
-    (shares, light)
+        TermShare { factors: folded.trie.factors(id), coefficient, share }
+    });
+    let mut terms: Vec<TermShare> = shares.collect();
+    let sum = |terms: &[TermShare]| terms.iter().fold(Rgb::BLACK, |sum, t| sum + t.share);
+    let light = sum(&terms[..dense]) + sum(&terms[dense..]);
+    terms.retain(|t| t.coefficient != 0.0);
+    (terms, light)
 }
 
 /// Reads nodes in preorder and builds them into trees.

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use crate::film::develop::{FrameRows, tile_rows};
 use crate::film::layout::{LANES, TILE_BLOCKS};
 use crate::film::{Film, FilmBlock, Frame};
-use crate::fold::transport::{Plane, Transport, TransportTile};
+use crate::fold::transport::{Block, Plane, Single, Transport, TransportTile};
 
 /// Which tiles to compute.
 #[derive(Clone, Copy, Debug)]
@@ -81,8 +81,7 @@ fn gather(tile: &TransportTile, values: &[[f32; 4]], gathered: &mut Vec<[f32; 4]
 #[inline(always)]
 fn film_tile(tile: &TransportTile, values: &[[f32; 4]], blocks: &mut [FilmBlock]) {
     for (block, out) in blocks.iter_mut().enumerate() {
-        let (entries, planes) = tile.block(block);
-        *out = sum(entries, planes, values);
+        *out = sum(tile.block(block), values);
     }
 }
 
@@ -95,18 +94,18 @@ fn frame_tile(
     rows: &mut FrameRows,
 ) {
     for block in 0..TILE_BLOCKS {
-        let (entries, planes) = tile.block(block);
-        rows.put(column, block, &sum(entries, planes, values), gain);
+        rows.put(column, block, &sum(tile.block(block), values), gain);
     }
 }
 
-/// Σ coefficient · value for the 16 pixels of a block.
+/// Σ coefficient · value for the 16 pixels of a block: the sum over the planes plus, where there are
+/// any, the sum over the single coefficients, each from +0 in canonical order.
 #[inline(always)]
-fn sum(entries: &[u32], planes: &[Plane], values: &[[f32; 4]]) -> FilmBlock {
+fn sum(block: Block, values: &[[f32; 4]]) -> FilmBlock {
     let mut red = [0.0f32; LANES];
     let mut green = [0.0f32; LANES];
     let mut blue = [0.0f32; LANES];
-    for (&entry, Plane(plane)) in entries.iter().zip(planes) {
+    for (&entry, Plane(plane)) in block.entries.iter().zip(block.planes) {
         let [r, g, b, lit] = values[entry as usize];
         if lit == 0.0 {
             continue;
@@ -117,5 +116,64 @@ fn sum(entries: &[u32], planes: &[Plane], values: &[[f32; 4]]) -> FilmBlock {
             blue[i] += plane[i] * b;
         }
     }
+    if !block.singles.is_empty() {
+        for (i, [r, g, b, _]) in sum_singles(block.singles, values).into_iter().enumerate() {
+            red[i] += r;
+            green[i] += g;
+            blue[i] += b;
+        }
+    }
     FilmBlock([red, green, blue])
+}
+
+/// The terms of few pixels, pixel by pixel.
+#[inline(always)]
+fn sum_singles(singles: &[Single], values: &[[f32; 4]]) -> [[f32; 4]; LANES] {
+    let mut sums = [[0.0f32; 4]; LANES];
+    for single in singles {
+        let value = values[single.entry()];
+        for (sum, v) in sums[single.lane()].iter_mut().zip(value) {
+            *sum += single.coefficient * v;
+        }
+    }
+    sums
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A number in [0, 1) from a counter.
+    fn value(i: usize) -> f32 {
+        ((i * 7919 + 13) % 1009) as f32 / 1009.0
+    }
+
+    #[test]
+    fn every_simd_level_gives_the_same_bits() {
+        let planes: Vec<Plane> =
+            (0..40).map(|t| Plane(std::array::from_fn(|i| value(t * 16 + i) / 3.0))).collect();
+        let entries: Vec<u32> = (0..40).map(|t| t * 2).collect();
+        let singles: Vec<Single> =
+            (0..30).map(|t| Single::new(t * 2 + 1, t as usize % 16, value(t as usize))).collect();
+        let values: Vec<[f32; 4]> =
+            (0..80).map(|t| [value(t), value(t + 1) * 1e-3, value(t + 2) * 7.0, 1.0]).collect();
+        let block = Block { entries: &entries, planes: &planes, singles: &singles };
+        let scalar = sum(block, &values);
+        for level in [Level::baseline(), Level::new()] {
+            let vectors = dispatch!(level, _simd => sum(block, &values));
+            assert_eq!(vectors, scalar, "{level:?}");
+        }
+        // The helper above must be able to fail: another order of summation is another sum.
+        let reversed: Vec<u32> = entries.iter().rev().copied().collect();
+        assert_ne!(sum(Block { entries: &reversed, ..block }, &values), scalar);
+    }
+
+    #[test]
+    fn terms_that_are_zero_change_no_bit() {
+        let planes = [Plane([0.3; 16]), Plane([0.7; 16]), Plane([0.11; 16])];
+        let values = [[0.1, 0.2, 0.3, 1.0], [0.0; 4], [0.5, 0.0, 0.9, 1.0]];
+        let all = Block { entries: &[0, 1, 2], planes: &planes, singles: &[] };
+        let lit = Block { entries: &[0, 2], planes: &[planes[0], planes[2]], singles: &[] };
+        assert_eq!(sum(all, &values), sum(lit, &values));
+    }
 }

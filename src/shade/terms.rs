@@ -62,3 +62,91 @@ fn product([r, g, b, _]: [f32; 4], factor: Rgb) -> [f32; 4] {
     let lit = r != 0.0 || g != 0.0 || b != 0.0;
     [r, g, b, if lit { 1.0 } else { 0.0 }]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fold::trie::ROOT;
+    use crate::scene::factor::Factor;
+    use crate::scene::{Light, Material, Scene};
+
+    /// Material 0 reflects, material 1 is lit by light 0, seen directly and in one and two mirrors.
+    fn scene(reflect: f32) -> Scene {
+        let mut scene = Scene::default();
+        let mut mirror = Material::new("mirror");
+        mirror.reflect = Rgb::grey(reflect);
+        let mut matte = Material::new("matte");
+        matte.diffuse = Rgb([0.5, 0.25, 0.0]);
+        scene.materials = vec![mirror, matte];
+        scene.lights = vec![Light::new("lamp")];
+        scene
+    }
+
+    fn trie() -> (Trie, [u32; 3]) {
+        let mut trie = Trie::default();
+        let mut path = ROOT;
+        let ids = [0, 1, 2].map(|_| {
+            let light = trie.intern(path, Factor::new(Kind::Light, 0, 0));
+            let id = trie.intern(light, Factor::new(Kind::Diffuse, 1, 0));
+            trie.mark(id, Marks::TERM);
+            path = trie.intern(path, Factor::new(Kind::Reflect, 0, 0));
+            id
+        });
+        trie.mark(path, Marks::FRONTIER);
+        (trie, ids)
+    }
+
+    fn evaluate(scene: &Scene) -> TermValues {
+        let mut values = TermValues::default();
+        values.evaluate(&trie().0, &FactorValues::new(scene));
+        values
+    }
+
+    #[test]
+    fn a_term_is_the_product_of_its_factors() {
+        let values = evaluate(&scene(0.5));
+        let [a, b, c] = trie().1.map(|id| values.values[id as usize]);
+        assert_eq!(a, [0.5, 0.25, 0.0, 1.0]);
+        assert_eq!(b, [0.25, 0.125, 0.0, 1.0]);
+        assert_eq!(c, [0.125, 0.0625, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn branches_die_by_zero_weight_and_depth_and_only_then() {
+        let lit = |scene: &Scene| {
+            let values = evaluate(scene);
+            trie().1.map(|id| values.values[id as usize][3] != 0.0)
+        };
+        assert_eq!(lit(&scene(0.5)), [true, true, true]);
+        assert_eq!(lit(&scene(0.0)), [true, false, false]);
+        let mut cut = scene(0.5);
+        cut.trace.cutoff = 0.3;
+        assert_eq!(lit(&cut), [true, true, false]);
+        let mut shallow = scene(0.5);
+        shallow.trace.depth = 1;
+        assert_eq!(lit(&shallow), [true, true, false]);
+    }
+
+    #[test]
+    fn a_frontier_that_lives_is_found() {
+        let mut scene = scene(0.5);
+        scene.trace.cutoff = 0.2;
+        assert_eq!(evaluate(&scene).uncovered, None);
+        scene.trace.cutoff = 0.125;
+        assert!(evaluate(&scene).uncovered.is_some());
+        scene.trace.depth = 2;
+        assert_eq!(evaluate(&scene).uncovered, None);
+    }
+
+    #[test]
+    fn huge_products_stay_finite() {
+        let mut scene = scene(10.0);
+        scene.lights[0].intensity = Rgb::grey(1e6);
+        let mut trie = Trie::default();
+        let path = (0..60).fold(ROOT, |p, _| trie.intern(p, Factor::new(Kind::Reflect, 0, 0)));
+        scene.trace.depth = 64;
+        let mut values = TermValues::default();
+        values.evaluate(&trie, &FactorValues::new(&scene));
+        assert_eq!(values.values[path as usize][0], f32::MAX);
+    }
+}

@@ -145,7 +145,8 @@ fn names_cost_nothing() {
 #[test]
 fn what_is_added_removed_or_exchanged_is_traced() {
     let scene = all_kinds();
-    let changes: [(&str, fn(&mut Scene)); 7] = [
+    type Alteration = fn(&mut Scene);
+    let changes: [(&str, Alteration); 7] = [
         ("a light more", |s| s.lights.push(Light::new("third"))),
         ("a light less", |s| drop(s.lights.pop())),
         ("no light", |s| s.lights.clear()),

@@ -1,0 +1,298 @@
+//! A second evaluation of the kept trees: plain recursion in f64, straight from the formulas, that
+//! knows nothing of folding, terms or factors.
+//!
+//! `I = kloc·I_local + reflect·I_reflected + transmit·filter·I_refracted`, with
+//! `I_local = emission + ambient·O·Ia + Σ lights·Π(transmit·filter)·[diffuse·O·max(0, N·L) +
+//! specular·tint·max(0, R·V)^n]`.
+
+use glam::DVec3;
+
+use rayforest::color::Rgb;
+use rayforest::forest::Forest;
+use rayforest::progress::Progress;
+use rayforest::scene::path::{self, Parameter};
+use rayforest::scene::{Material, Paint, Scene};
+use rayforest::session::{Class, Session};
+
+use super::picture::Picture;
+use super::preorder::{Limb, Lit, Tree, pixels};
+use super::stage::{open, shipped, shipped_names};
+
+/// What a channel may differ: the trees keep cosines in f32, and the matrix product multiplies and
+/// adds in f32, where every one of up to a hundred operations of a path rounds by 6e-8. The floor is
+/// half a millionth of what 8 bits can show.
+fn allowed(value: f64) -> f64 {
+    1e-5 * value + 1e-7
+}
+
+/// The picture, and what the rule of liveness did.
+struct Evaluated {
+    picture: Picture,
+    /// Branches that are stored and dead under the present scene.
+    dead: usize,
+    /// How close a weight came to the cut-off, as a ratio minus 1: f32 and f64 decide alike only
+    /// if this is well above the rounding of f32.
+    margin: f64,
+    /// Branches that live under the present scene and were not grown.
+    missing: usize,
+}
+
+/// Evaluates the trees under the scene.
+fn evaluate(forest: &Forest, scene: &Scene) -> Evaluated {
+    let mut evaluator = Evaluator { scene, dead: 0, margin: f64::INFINITY, missing: 0 };
+    let [width, height] = forest.layout.size;
+    let mut picture =
+        Picture { size: [width, height], pixels: vec![[f64::NAN; 3]; (width * height) as usize] };
+    for pixel in pixels(forest) {
+        let sum: DVec3 = pixel.samples.iter().map(|tree| evaluator.sample(tree.as_ref())).sum();
+        let [x, y] = pixel.pixel;
+        let mean = sum / f64::from(forest.samples);
+        picture.pixels[(y * width + x) as usize] = mean.to_array();
+    }
+    let Evaluator { scene: _, dead, margin, missing } = evaluator;
+    Evaluated { picture, dead, margin, missing }
+}
+
+struct Evaluator<'a> {
+    scene: &'a Scene,
+    dead: usize,
+    margin: f64,
+    missing: usize,
+}
+
+/// Weight and depth of a node: what decides whether a branch lives.
+#[derive(Clone, Copy)]
+struct Path {
+    weight: DVec3,
+    depth: u32,
+}
+
+impl Evaluator<'_> {
+    fn sample(&mut self, tree: Option<&Tree>) -> DVec3 {
+        match tree {
+            Some(tree) => self.light(tree, Path { weight: DVec3::ONE, depth: 0 }),
+            None => rgb(self.scene.background.color),
+        }
+    }
+
+    fn light(&mut self, tree: &Tree, path: Path) -> DVec3 {
+        let scene = self.scene;
+        let m = &scene.materials[tree.material];
+        let (reflect, transmit) = (rgb(m.reflect), rgb(m.transmit));
+        let mirror = if tree.total { (reflect + transmit).min(DVec3::ONE) } else { reflect };
+        rgb(m.kloc) * local(scene, tree, m)
+            + mirror * self.limb(&tree.reflected, mirror, path)
+            + transmit
+                * rgb(m.filter)
+                * self.limb(&tree.transmitted, transmit * rgb(m.filter), path)
+    }
+
+    /// What comes back along a branch: nothing if it is dead under the present scene.
+    fn limb(&mut self, limb: &Limb, factor: DVec3, path: Path) -> DVec3 {
+        let child = self.follow(factor, path);
+        match (limb, child) {
+            (Limb::Absent, _) | (Limb::Cut(_), None) => DVec3::ZERO,
+            (Limb::Cut(_), Some(_)) => {
+                self.missing += 1;
+                DVec3::ZERO
+            }
+            (Limb::Missed | Limb::Grown(_), None) => {
+                self.dead += 1;
+                DVec3::ZERO
+            }
+            (Limb::Missed, Some(_)) => rgb(self.scene.background.color),
+            (Limb::Grown(tree), Some(child)) => self.light(tree, child),
+        }
+    }
+
+    /// The rule of liveness: no factor zero, depth within the limit, weight not below the cut-off.
+    fn follow(&mut self, factor: DVec3, path: Path) -> Option<Path> {
+        if factor == DVec3::ZERO || path.depth >= self.scene.trace.depth {
+            return None;
+        }
+        let weight = path.weight * factor.min(DVec3::ONE);
+        let cutoff = f64::from(self.scene.trace.cutoff);
+        if cutoff > 0.0 {
+            self.margin = self.margin.min((weight.max_element() / cutoff - 1.0).abs());
+        }
+        (weight.max_element() >= cutoff).then_some(Path { weight, depth: path.depth + 1 })
+    }
+}
+
+/// Ambient light, lamps, and what the surface gives off, without kloc.
+fn local(scene: &Scene, tree: &Tree, m: &Material) -> DVec3 {
+    let o = match (&m.paint, tree.slot) {
+        (Paint::Solid(color), _) => rgb(*color),
+        (Paint::Checker { a, .. }, 0) => rgb(*a),
+        (Paint::Checker { b, .. }, _) => rgb(*b),
+    };
+    let lamps: DVec3 = tree.lights.iter().map(|lit| lamp(scene, lit, m, o)).sum();
+    rgb(m.emission) + rgb(m.ambient) * o * rgb(scene.ambient_light) + lamps
+}
+
+fn lamp(scene: &Scene, lit: &Lit, m: &Material, o: DVec3) -> DVec3 {
+    let light = &scene.lights[lit.light];
+    let Some(crossed) = &lit.crossed else { return DVec3::ZERO };
+    if !light.on || lit.n_dot_l <= 0.0 {
+        return DVec3::ZERO;
+    }
+    let through = crossed.iter().map(|&m| &scene.materials[m]);
+    let shadow: DVec3 = through.map(|m| rgb(m.transmit) * rgb(m.filter)).product();
+    let metallic = f64::from(m.metallic);
+    let tint = DVec3::splat(1.0 - metallic) + o * metallic;
+    let cosine = (1.0 - lit.one_minus_r_dot_v).max(0.0);
+    let highlight = if cosine > 0.0 { cosine.powf(m.shininess.into()) } else { 0.0 };
+    rgb(light.color)
+        * rgb(light.intensity)
+        * shadow
+        * (rgb(m.diffuse) * o * lit.n_dot_l + rgb(m.specular) * tint * highlight)
+}
+
+fn rgb(color: Rgb) -> DVec3 {
+    DVec3::from_array(color.0.map(f64::from))
+}
+
+/// Whether a picture is what an evaluation says; if not, what is wrong.
+fn judge(ours: &Picture, truth: &Evaluated) -> Result<(), String> {
+    if truth.missing > 0 {
+        return Err(format!("{} branches live and were not grown", truth.missing));
+    }
+    if truth.margin < 1e-5 {
+        return Err(format!("a weight is within {:e} of the cut-off", truth.margin));
+    }
+    let comparison = ours.compare(&truth.picture, allowed);
+    let (units, [x, y]) = comparison.worst;
+    match comparison.share {
+        0.0 => Ok(()),
+        _ => Err(format!("pixel ({x}, {y}) differs by {units} times what is allowed")),
+    }
+}
+
+/// Holds a session against the second evaluation; gives the number of dead branches.
+fn check(session: &Session, name: &str) -> usize {
+    let truth = evaluate(session.forest(), session.scene());
+    let ours = Picture::of_film(&session.film());
+    if let Err(why) = judge(&ours, &truth) {
+        let files = ours.leave(&truth.picture, &format!("evaluator-{name}"));
+        panic!("{name}: {why}\n{files}");
+    }
+    truth.dead
+}
+
+/// A sequence of numbers in [0, 1).
+struct Dice(u64);
+
+impl Dice {
+    fn roll(&mut self) -> f64 {
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 40) as f64 / (1u64 << 24) as f64
+    }
+}
+
+/// A new value for a parameter that an edit without rays may change, `None` for others and for most
+/// of those. Path factors stay within `reach` times what was traced.
+fn new_value(original: &Parameter, dice: &mut Dice, reach: f64) -> Option<String> {
+    let Parameter { path, value, .. } = original;
+    let key = path.rsplit('.').next().unwrap_or_default();
+    if dice.roll() < 0.6 {
+        return None;
+    }
+    let mut triple = |scale: f64| {
+        let channels = [scale * dice.roll(), scale * dice.roll(), scale * dice.roll()];
+        format!("{channels:?}")
+    };
+    Some(match key {
+        "ambient_light" | "color" | "a" | "b" | "kloc" | "ambient" | "diffuse" | "specular" => {
+            triple(1.0)
+        }
+        "emission" => triple(0.2),
+        "intensity" => triple(1.5),
+        "reflect" | "transmit" | "filter" => match dice.roll() {
+            r if r < 0.1 => "0".to_owned(),
+            _ => scaled(value, &[0; 3].map(|_| reach * dice.roll())),
+        },
+        "shininess" => format!("{}", 1000f64.powf(dice.roll())),
+        "metallic" => format!("{}", dice.roll()),
+        "on" => format!("{}", dice.roll() < 0.7),
+        "depth" => format!("{}", (value.parse::<f64>().ok()? * (0.5 + 0.5 * dice.roll())).floor()),
+        "cutoff" => format!("{}", value.parse::<f64>().ok()? * (1.0 + 4.0 * dice.roll())),
+        _ => return None,
+    })
+}
+
+/// A number or `[r, g, b]` times three numbers.
+fn scaled(value: &str, by: &[f64; 3]) -> String {
+    let numbers = value.trim_matches(['[', ']']).split(',').map(|n| n.trim().parse());
+    let numbers: Vec<f64> = numbers.collect::<Result<_, _>>().expect("numbers");
+    let channel = |i: usize| numbers.get(i).unwrap_or(&numbers[0]) * by[i];
+    format!("{:?}", [0, 1, 2].map(channel))
+}
+
+/// The scene with some of its parameters changed.
+fn edited(now: &Scene, originals: &[Parameter], dice: &mut Dice, reach: f64) -> Scene {
+    let mut scene = now.clone();
+    for original in originals {
+        if let Some(value) = new_value(original, dice, reach) {
+            path::set(&mut scene, &original.path, &value).unwrap_or_else(|error| panic!("{error}"));
+        }
+    }
+    scene
+}
+
+#[test]
+fn every_shipped_scene_is_what_the_formulas_say_as_traced_and_after_edits() {
+    let mut dice = Dice(1);
+    let mut dead = 0;
+    let mut seen = [0; 3];
+    for name in shipped_names() {
+        let mut session = open(shipped(&name));
+        let originals = path::parameters(session.scene());
+        assert_eq!(check(&session, &name), 0, "{name}: a fresh trace stores no dead branch");
+        for round in 0..6 {
+            // A raised path factor may ask for rays: then lowered ones, which never do.
+            let raised = edited(session.scene(), &originals, &mut dice, 1.1);
+            let without_rays = session.class_of(&raised) <= Class::Refold;
+            let next = match without_rays && raised.trace.depth > 0 {
+                true => raised,
+                false => edited(session.scene(), &originals, &mut dice, 1.0),
+            };
+            let report = session.edit(next, &Progress::default()).unwrap();
+            assert!(report.class <= Class::Refold, "{name}, round {round}: {:?}", report.reason);
+            assert_eq!(report.rays.total(), 0, "{name}, round {round}");
+            seen[report.class as usize] += 1;
+            dead += check(&session, &format!("{name}-{round}"));
+        }
+    }
+    let [none, reshade, refold] = seen;
+    assert!(none == 0 && reshade > 0 && refold > 0, "classes of edits: {seen:?}");
+    assert!(dead > 1000, "edits left only {dead} stored branches dead");
+}
+
+#[test]
+fn the_comparison_fails_for_another_scene_or_other_trees() {
+    let session = open(shipped("whitted"));
+    let ours = Picture::of_film(&session.film());
+    let right = session.scene();
+    let under = |scene: &Scene| judge(&ours, &evaluate(session.forest(), scene));
+    assert_eq!(under(right), Ok(()));
+    for (path, value, complaint) in [
+        ("materials.tiles.diffuse", "0.70003", "differs"),
+        ("materials.glass.specular", "0.999", "differs"),
+        ("materials.glass.transmit", "0.84997", "differs"),
+        ("materials.mirror.reflect", "0.55002", "differs"),
+        ("materials.mirror.shininess", "100.1", "differs"),
+        ("materials.glass.filter", "[1, 1, 0.9999]", "differs"),
+        ("background.color", "[0.08, 0.16, 0.30001]", "differs"),
+        ("ambient_light", "[1, 1, 0.999]", "differs"),
+        ("trace.depth", "5", "differs"),
+        ("trace.cutoff", "0.05", "differs"),
+        ("lights.key.on", "false", "differs"),
+        ("trace.cutoff", "0.0005", "were not grown"),
+    ] {
+        let mut wrong = right.clone();
+        path::set(&mut wrong, path, value).unwrap();
+        let why = under(&wrong).expect_err(path);
+        assert!(why.contains(complaint), "{path} = {value}: {why}");
+    }
+}

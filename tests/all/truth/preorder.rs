@@ -1,0 +1,162 @@
+//! The kept trees read once more, by a reader of the tests' own, into plain recursive values.
+
+use rayforest::film::layout::{LANES, Place, TILE_BLOCKS};
+use rayforest::forest::Forest;
+use rayforest::forest::tree::{BLOCKED, Branch, TileTrees};
+
+/// A node with what grows from it.
+pub(super) struct Tree {
+    pub(super) t: f64,
+    pub(super) primitive: u32,
+    pub(super) material: usize,
+    pub(super) slot: usize,
+    /// Whether the mirror ray is that of total reflection.
+    pub(super) total: bool,
+    pub(super) lights: Vec<Lit>,
+    pub(super) reflected: Limb,
+    pub(super) transmitted: Limb,
+}
+
+/// A light before a surface.
+pub(super) struct Lit {
+    pub(super) light: usize,
+    pub(super) n_dot_l: f64,
+    pub(super) one_minus_r_dot_v: f64,
+    /// The materials that the shadow ray crossed; `None`: something opaque stood in its way.
+    pub(super) crossed: Option<Vec<usize>>,
+}
+
+/// What became of a branch.
+pub(super) enum Limb {
+    Grown(Box<Tree>),
+    Missed,
+    /// Not followed: its factor is zero, or its weight, or the depth limit, forbade it.
+    Cut(Branch),
+    Absent,
+}
+
+/// A pixel with one tree per sample; `None` where the sample's ray left the scene.
+pub(super) struct PixelTrees {
+    pub(super) pixel: [u32; 2],
+    pub(super) samples: Vec<Option<Tree>>,
+}
+
+/// The trees of every pixel of a forest that released none.
+pub(super) fn pixels(forest: &Forest) -> Vec<PixelTrees> {
+    let mut list = Vec::new();
+    for (tile, trees) in forest.tiles.iter().enumerate() {
+        let trees = trees.as_ref().expect("all trees are kept");
+        let mut cursor = Cursor { trees, sample: 0, node: 0, light: 0, crossing: 0 };
+        for block in 0..TILE_BLOCKS {
+            for lane in 0..LANES {
+                if let Some(pixel) = forest.layout.pixel(Place { tile, block, lane }) {
+                    let samples = (0..forest.samples).map(|_| cursor.sample()).collect();
+                    list.push(PixelTrees { pixel, samples });
+                }
+            }
+        }
+        cursor.assert_at_end();
+    }
+    list
+}
+
+struct Cursor<'a> {
+    trees: &'a TileTrees,
+    sample: usize,
+    node: usize,
+    light: usize,
+    crossing: usize,
+}
+
+impl Cursor<'_> {
+    fn sample(&mut self) -> Option<Tree> {
+        self.sample += 1;
+        self.trees.hits[self.sample - 1].then(|| self.tree())
+    }
+
+    /// A tree is at most 64 branches deep, and so is the recursion.
+    fn tree(&mut self) -> Tree {
+        let node = self.trees.nodes[self.node];
+        self.node += 1;
+        let lights = (0..node.lights).map(|_| self.lit()).collect();
+        let reflected = self.limb(node.ends.reflected());
+        let transmitted = self.limb(node.ends.transmitted());
+        Tree {
+            t: node.t,
+            primitive: node.primitive,
+            material: node.material.into(),
+            slot: node.slot.into(),
+            total: node.ends.total(),
+            lights,
+            reflected,
+            transmitted,
+        }
+    }
+
+    fn lit(&mut self) -> Lit {
+        let hit = self.trees.lights[self.light];
+        self.light += 1;
+        let blocked = hit.crossed == BLOCKED;
+        let count = if blocked { 1 } else { usize::from(hit.crossed) };
+        let materials = &self.trees.crossings[self.crossing..self.crossing + count];
+        self.crossing += count;
+        Lit {
+            light: hit.light.into(),
+            n_dot_l: hit.n_dot_l.into(),
+            one_minus_r_dot_v: hit.one_minus_r_dot_v.into(),
+            crossed: (!blocked).then(|| materials.iter().map(|&m| m.into()).collect()),
+        }
+    }
+
+    fn limb(&mut self, branch: Branch) -> Limb {
+        match branch {
+            Branch::Grown => Limb::Grown(Box::new(self.tree())),
+            Branch::Missed => Limb::Missed,
+            Branch::Absent => Limb::Absent,
+            Branch::Zero | Branch::Weight | Branch::Depth => Limb::Cut(branch),
+        }
+    }
+
+    fn assert_at_end(&self) {
+        let TileTrees { blocks: _, hits, nodes, lights, crossings } = self.trees;
+        let at = [self.sample, self.node, self.light, self.crossing];
+        let end = [hits.len(), nodes.len(), lights.len(), crossings.len()];
+        assert_eq!(at, end, "samples, nodes, lights and crossings read, and how many there are");
+    }
+}
+
+impl Tree {
+    /// The nodes of a tree whose every node has at most one branch grown, from the eye on.
+    pub(super) fn chain(&self) -> Vec<&Tree> {
+        let mut chain = vec![self];
+        let mut at = self;
+        loop {
+            at = match (&at.reflected, &at.transmitted) {
+                (Limb::Grown(_), Limb::Grown(_)) => panic!("a node with two branches"),
+                (Limb::Grown(next), _) | (_, Limb::Grown(next)) => next,
+                _ => return chain,
+            };
+            chain.push(at);
+        }
+    }
+
+    /// Calls `visit` for every node.
+    pub(super) fn each(&self, visit: &mut impl FnMut(&Tree)) {
+        visit(self);
+        for limb in [&self.reflected, &self.transmitted] {
+            if let Limb::Grown(tree) = limb {
+                tree.each(visit);
+            }
+        }
+    }
+
+    /// Whether a branch anywhere in the tree ended for this reason.
+    pub(super) fn has_cut(&self, why: Branch) -> bool {
+        let mut found = false;
+        self.each(&mut |tree| {
+            let cut = |limb: &Limb| matches!(limb, Limb::Cut(branch) if *branch == why);
+            found |= cut(&tree.reflected) || cut(&tree.transmitted);
+        });
+        found
+    }
+}
