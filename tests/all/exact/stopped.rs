@@ -10,8 +10,8 @@ use rayforest::session::{Class, Session};
 
 use super::{assert_same_picture, open, options, set, shipped};
 
-/// Runs a job that is cancelled after `delay`: what it gave, and how long after the cancel. Without
-/// a bound for slow machines this would be 100 ms.
+/// Runs a job that is cancelled after `delay`: what it gave, and how long after the cancel.
+/// Promised are 100 ms; a busy machine is given a second.
 fn cancelled_after<T>(
     delay: Duration,
     job: impl FnOnce(&Progress) -> Result<T, TraceError>,
