@@ -10,13 +10,16 @@ use rayforest::session::{Class, Session};
 
 use super::{assert_same_picture, open, options, set, shipped};
 
-/// Runs a job that is cancelled after `delay`: what it gave, and how long after the cancel.
+/// Runs a job that is cancelled after `delay`, before its start if that is zero: what it gave, and how long after the cancel.
 /// Promised are 100 ms; a busy machine is given a second.
 fn cancelled_after<T>(
     delay: Duration,
     job: impl FnOnce(&Progress) -> Result<T, TraceError>,
 ) -> (Result<T, TraceError>, Duration) {
     let progress = Progress::default();
+    if delay.is_zero() {
+        progress.cancel();
+    }
     thread::scope(|scope| {
         let killer = scope.spawn(|| {
             thread::sleep(delay);
