@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use super::render::edit_line;
+use super::watch::watched;
 use super::{Failure, print, read_scene, say};
 use crate::film::write::{Format, picture};
-use crate::progress::Progress;
 use crate::scene::path::set;
 use crate::scene::{Scene, read, write};
 use crate::session::{Options, Session};
@@ -18,8 +18,8 @@ pub(crate) fn run(file: Option<&Path>) -> Result<(), Failure> {
         Some(file) => read_scene(file)?,
         None => read::text(BUILT_IN, Path::new("whitted.toml")).map_err(Failure::input)?,
     };
-    let progress = Progress::default();
-    let mut session = Session::open(scene, Options::default(), &progress).map_err(Failure::job)?;
+    let opened = watched("tracing", |p| Session::open(scene, Options::default(), p));
+    let mut session = opened.map_err(Failure::job)?;
     let report = session.trace_report();
     let [width, height] = session.scene().picture.size;
     print(&format!(
@@ -31,7 +31,8 @@ pub(crate) fn run(file: Option<&Path>) -> Result<(), Failure> {
     save(&session, "rayforest.png".into())?;
     let traced = report.seconds;
     for (number, (assignment, edited)) in edits(session.scene()).into_iter().enumerate() {
-        let report = session.edit(edited, &progress).map_err(Failure::job)?;
+        let edit = watched("tracing", |progress| session.edit(edited, progress));
+        let report = edit.map_err(Failure::job)?;
         let gain = traced * 1e3 / report.milliseconds;
         print(&format!("{}, {gain:.0} times faster", edit_line(&assignment, &report)));
         save(&session, format!("rayforest-edit-{}.png", number + 1).into())?;

@@ -3,6 +3,7 @@
 mod demo;
 mod inspect;
 mod render;
+mod watch;
 
 use std::fmt;
 use std::io::Write;

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::{Value, json};
 
+use super::watch::watched;
 use super::{Common, Failure, print, read_scene, say, set, write_text};
 use crate::film::write::{Format, picture};
 use crate::forest::grow::RayCounts;
-use crate::progress::Progress;
 use crate::scene::write;
 use crate::session::{EditReport, Session};
 
@@ -47,12 +47,13 @@ impl Render {
         }
         // A mistake in an edit is found before the trace, not after it.
         let edits = self.edits(&scene)?;
-        let progress = Progress::default();
-        let mut session = Session::open(scene, options, &progress).map_err(Failure::job)?;
+        let opened = watched("tracing", |progress| Session::open(scene, options, progress));
+        let mut session = opened.map_err(Failure::job)?;
         let mut stats = opening_stats(&session);
         let mut reports = Vec::new();
         for (assignment, edited) in edits {
-            let report = session.edit(edited, &progress).map_err(Failure::job)?;
+            let edit = watched("tracing", |progress| session.edit(edited, progress));
+            let report = edit.map_err(Failure::job)?;
             say(&edit_line(assignment, &report));
             reports.push(edit_stats(assignment, &report));
         }

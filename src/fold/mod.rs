@@ -2,6 +2,8 @@
 //! of parameters.
 
 pub mod highlight;
+#[cfg(test)]
+mod tests;
 pub mod transport;
 pub mod trie;
 
@@ -11,6 +13,7 @@ use transport::{
 };
 use trie::{Marks, ROOT, Trie};
 
+use crate::color::Rgb;
 use crate::film::layout::LANES;
 use crate::forest::tree::{BLOCKED, Branch, LightHit, Node, Reader};
 use crate::math::log2_of_cosine;
@@ -220,6 +223,14 @@ impl Folder {
         let slot = self.slot(id);
         self.planes[slot as usize].0[lane & (LANES - 1)] += value;
         self.masks[slot as usize] |= 1 << (lane & (LANES - 1));
+    }
+
+    /// Adds a coefficient of three numbers, as where a path meets a texel: a term per channel.
+    pub fn add_colored(&mut self, term: u32, lane: usize, values: Rgb) {
+        for (channel, value) in (0u16..).zip(values.0) {
+            let id = self.find(term, Factor::new(Kind::Channel, channel, 0));
+            self.add(id, lane, value);
+        }
     }
 
     /// Ends a tile: puts its terms in canonical order, computes its highlights, and fills `reuse`.

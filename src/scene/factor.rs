@@ -28,9 +28,12 @@ pub enum Kind {
     Light,
     /// `transmit · filter` of a material that a shadow ray crosses, once per surface.
     Shadow,
+    /// One channel alone (index 0, 1, 2), no parameter: ends a term whose coefficient is a colour.
+    /// A coefficient of three numbers is three terms, one per channel.
+    Channel,
 }
 
-const KINDS: [Kind; 9] = [
+const KINDS: [Kind; 10] = [
     Kind::Background,
     Kind::Reflect,
     Kind::Transmit,
@@ -40,6 +43,7 @@ const KINDS: [Kind; 9] = [
     Kind::Specular,
     Kind::Light,
     Kind::Shadow,
+    Kind::Channel,
 ];
 
 /// Name of one factor: kind in bits 28…31, slot in bits 16…23, index of material or light in bits
@@ -103,6 +107,7 @@ impl Factor {
             Kind::Specular => format!("specular({}{})", material(), slot()),
             Kind::Light => format!("light({})", scene.lights[self.index()].name),
             Kind::Shadow => format!("shadow({})", material()),
+            Kind::Channel => ["red", "green", "blue"][self.index()].into(),
         }
     }
 }
@@ -164,6 +169,7 @@ impl FactorValues {
             Kind::Diffuse => self.diffuse[i][slot],
             Kind::Specular => self.specular[i][slot],
             Kind::Light => self.light[i],
+            Kind::Channel => Rgb(std::array::from_fn(|c| if c == i { 1.0 } else { 0.0 })),
         }
     }
 

@@ -9,7 +9,7 @@ use crate::geometry::Geometry;
 use crate::progress::{Cancelled, Progress};
 use crate::scene::Scene;
 use crate::scene::factor::{Factor, FactorValues};
-use crate::shade::terms::TermValues;
+use crate::shade::terms::{TermProgram, TermValues};
 
 /// All that is known of a pixel.
 pub struct Inspection {
@@ -110,7 +110,7 @@ fn terms(
     let weight = 1.0 / scene.trace.samples as f32;
     let folded = folder.finish_tile(Default::default(), weight, &shininess);
     let mut values = TermValues::default();
-    values.evaluate(folded.trie, &FactorValues::new(scene));
+    values.evaluate(&TermProgram::new(folded.trie), &FactorValues::new(scene));
     let block = folded.tile.block(0);
     let planes = block.entries.iter().zip(block.planes);
     let mut rows: Vec<_> = planes.map(|(&e, plane)| (e as usize, plane.0[lane])).collect();

@@ -22,7 +22,7 @@ use crate::scene::Scene;
 use crate::scene::change::Change;
 use crate::scene::factor::FactorValues;
 use crate::shade::cpu::{self, Tiles};
-use crate::shade::terms::TermValues;
+use crate::shade::terms::{TermProgram, TermValues};
 use trace::{TraceError, TraceReport, trace};
 
 /// What a session may use.
@@ -97,7 +97,10 @@ pub struct Session {
     geometry: Geometry,
     forest: Forest,
     transport: Transport,
+    program: TermProgram,
     terms: TermValues,
+    /// The terms before the latest edit, to find the tiles that changed.
+    before: Vec<[f32; 4]>,
     frame: Frame,
     trace: TraceReport,
     geometry_seconds: f64,
@@ -120,6 +123,7 @@ impl Session {
         let geometry_seconds = start.elapsed().as_secs_f64();
         let traced = trace(&scene, &geometry, &pool, options.memory, Forest::default(), progress)?;
         let frame = Frame::new(scene.picture.size);
+        let program = TermProgram::new(&traced.transport.trie);
         let mut session = Session {
             scene,
             options,
@@ -127,7 +131,9 @@ impl Session {
             geometry,
             forest: traced.forest,
             transport: traced.transport,
+            program,
             terms: TermValues::default(),
+            before: Vec::new(),
             frame,
             trace: traced.report,
             geometry_seconds,
@@ -163,7 +169,7 @@ impl Session {
     }
 
     /// What in an edit cannot be had from what is kept.
-    fn needs_rays(&self, scene: &Scene, change: &Change) -> Option<String> {
+    fn needs_rays(&mut self, scene: &Scene, change: &Change) -> Option<String> {
         if let Some(what) = change.moves_rays {
             return Some(format!("{what} moves rays"));
         }
@@ -172,9 +178,7 @@ impl Session {
             return Some("highlight lists were released for memory".into());
         }
         if change.terms {
-            let mut terms = TermValues::default();
-            terms.evaluate(&self.transport.trie, &FactorValues::new(scene));
-            let id = terms.uncovered?;
+            let id = self.terms.uncovered(&self.program, &FactorValues::new(scene))?;
             let factors = self.transport.trie.factors(id);
             let names: Vec<_> = factors.iter().map(|f| f.describe(scene)).collect();
             return Some(format!("the branch {} comes alive", names.join(" · ")));
@@ -189,10 +193,9 @@ impl Session {
             self.refold(&change.refold, &mut marks);
         }
         if change.terms {
-            let before = std::mem::take(&mut self.terms.values);
-            self.terms.values.clone_from(&before);
+            std::mem::swap(&mut self.before, &mut self.terms.values);
             self.evaluate_terms();
-            self.mark_changed(&before, &mut marks);
+            self.mark_changed(&mut marks);
         }
         self.draw(Tiles::Marked(&marks));
         class_without_rays(change)
@@ -214,12 +217,15 @@ impl Session {
     }
 
     /// Marks the tiles whose dictionary holds a term with another value.
-    fn mark_changed(&self, before: &[[f32; 4]], marks: &mut [bool]) {
-        let after = &self.terms.values;
-        let changed: Vec<bool> = before.iter().zip(after).map(|(a, b)| a != b).collect();
-        for (mark, tile) in marks.iter_mut().zip(&self.transport.tiles) {
-            *mark = *mark || tile.terms.iter().any(|&t| changed[t as usize]);
-        }
+    fn mark_changed(&self, marks: &mut [bool]) {
+        let pairs = self.before.iter().zip(&self.terms.values);
+        let changed: Vec<bool> = pairs.map(|(a, b)| a != b).collect();
+        let tiles = marks.par_iter_mut().zip(&self.transport.tiles);
+        self.pool.install(|| {
+            tiles.for_each(|(mark, tile)| {
+                *mark = *mark || tile.terms.iter().any(|&t| changed[t as usize]);
+            });
+        });
     }
 
     fn retrace(&mut self, scene: Scene, progress: &Progress) -> Result<(), TraceError> {
@@ -234,6 +240,7 @@ impl Session {
         self.geometry = geometry;
         self.forest = traced.forest;
         self.transport = traced.transport;
+        self.program = TermProgram::new(&self.transport.trie);
         self.trace = traced.report;
         self.frame = Frame::new(self.scene.picture.size);
         self.evaluate_terms();
@@ -253,7 +260,7 @@ impl Session {
     }
 
     /// What making `scene` the session's would cost.
-    pub fn class_of(&self, scene: &Scene) -> Class {
+    pub fn class_of(&mut self, scene: &Scene) -> Class {
         let change = Change::between(&self.scene, scene);
         match self.needs_rays(scene, &change) {
             Some(_) => Class::Retrace,
@@ -263,7 +270,7 @@ impl Session {
 
     /// Evaluates every term of the present scene.
     pub fn evaluate_terms(&mut self) {
-        self.terms.evaluate(&self.transport.trie, &FactorValues::new(&self.scene));
+        self.terms.evaluate(&self.program, &FactorValues::new(&self.scene));
     }
 
     /// Shades every pixel anew, as after an edit that touches everything.

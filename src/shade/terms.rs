@@ -1,18 +1,78 @@
 //! The value of every term for the present parameters, dead branches being 0.
 
 use crate::color::Rgb;
-use crate::fold::trie::{Marks, Trie};
-use crate::scene::factor::{FactorValues, Kind, PathWeight};
+use crate::fold::trie::{Marks, Trie, TrieNode};
+use crate::scene::factor::{Factor, FactorValues, Kind, PathWeight};
+
+/// The terms of a picture as straight-line code: made once per trace, run at every edit.
+///
+/// Path nodes come first, because liveness runs along them; then all others need one multiplication
+/// each, without a decision. Parents stand before their children in both lists.
+#[derive(Clone, Debug, Default)]
+pub struct TermProgram {
+    terms: usize,
+    factors: Vec<Factor>,
+    paths: Vec<Step>,
+    products: Vec<Step>,
+    frontier: Vec<Frontier>,
+}
+
+/// `values[id] = values[parent] · factors[factor]`.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    id: u32,
+    parent: u32,
+    factor: u32,
+}
+
+/// Where the kept trees end: a branch that was not followed, or a shadow ray that was stopped.
+#[derive(Clone, Copy, Debug)]
+struct Frontier {
+    id: u32,
+    parent: u32,
+    factor: Factor,
+}
+
+impl TermProgram {
+    /// Compiles the terms of a trie.
+    pub fn new(trie: &Trie) -> TermProgram {
+        let nodes = trie.nodes();
+        let mut factors: Vec<Factor> = nodes.iter().skip(1).map(|n| n.factor).collect();
+        factors.sort_unstable();
+        factors.dedup();
+        let mut program = TermProgram { terms: nodes.len(), factors, ..TermProgram::default() };
+        for (id, node) in (0u32..).zip(nodes).skip(1) {
+            program.add(id, node);
+        }
+        program
+    }
+
+    fn add(&mut self, id: u32, &TrieNode { parent, factor, marks }: &TrieNode) {
+        let index = self.factors.partition_point(|&f| f < factor) as u32;
+        let list = if factor.is_path() { &mut self.paths } else { &mut self.products };
+        list.push(Step { id, parent, factor: index });
+        if marks.has(Marks::FRONTIER.and(Marks::WITNESS)) {
+            self.frontier.push(Frontier { id, parent, factor });
+        }
+    }
+
+    /// Allocated bytes.
+    pub fn bytes(&self) -> usize {
+        let TermProgram { terms: _, factors, paths, products, frontier } = self;
+        factors.capacity() * size_of::<Factor>()
+            + (paths.capacity() + products.capacity()) * size_of::<Step>()
+            + frontier.capacity() * size_of::<Frontier>()
+    }
+}
 
 /// The values of a picture's terms; memory is kept from edit to edit.
 #[derive(Clone, Debug, Default)]
 pub struct TermValues {
-    /// Per trie node red, green, blue, and 1 if any of them is not zero.
+    /// Per trie node red, green, blue, and not 0 if any of them is not.
     pub values: Vec<[f32; 4]>,
     /// Per trie node that ends in a path factor its weight; dead where `depth` is [`DEAD`].
     weights: Vec<PathWeight>,
-    /// The first frontier node that lives, if any: the kept trees lack its branch.
-    pub uncovered: Option<u32>,
+    table: Vec<[f32; 4]>,
 }
 
 const DEAD: u32 = u32::MAX;
@@ -20,47 +80,58 @@ const DEAD: u32 = u32::MAX;
 impl TermValues {
     /// Evaluates every term: parents first, one multiplication each, in `f32` and clamped to finite
     /// values, so that a zero coefficient in front of it stays zero.
-    pub fn evaluate(&mut self, trie: &Trie, factors: &FactorValues) {
-        let nodes = trie.nodes();
-        self.values.resize(nodes.len(), [0.0; 4]);
-        self.weights.resize(nodes.len(), PathWeight::EYE);
+    pub fn evaluate(&mut self, program: &TermProgram, factors: &FactorValues) {
+        self.follow_paths(program, factors);
+        self.values.resize(program.terms, [0.0; 4]);
+        self.table.clear();
+        self.table.extend(program.factors.iter().map(|&f| {
+            let Rgb([r, g, b]) = factors.value(f);
+            [r, g, b, r.max(g).max(b)]
+        }));
         self.values[0] = [1.0; 4];
+        for &Step { id, parent, factor } in &program.paths {
+            let alive = self.weights[id as usize].depth != DEAD;
+            let value = product(self.values[parent as usize], self.table[factor as usize]);
+            self.values[id as usize] = if alive { value } else { [0.0; 4] };
+        }
+        for &Step { id, parent, factor } in &program.products {
+            self.values[id as usize] =
+                product(self.values[parent as usize], self.table[factor as usize]);
+        }
+    }
+
+    /// Applies the rule of liveness to every path, and gives the first frontier that lives, if any:
+    /// the kept trees lack its branch. Values are left alone.
+    pub fn uncovered(&mut self, program: &TermProgram, factors: &FactorValues) -> Option<u32> {
+        self.follow_paths(program, factors);
+        let lives = |f: &&Frontier| match f.factor.kind() {
+            Kind::Shadow => {
+                let reached = self.weights[f.parent as usize].depth != DEAD;
+                reached && !factors.value(f.factor).is_black()
+            }
+            _ => self.weights[f.id as usize].depth != DEAD,
+        };
+        program.frontier.iter().find(lives).map(|f| f.id)
+    }
+
+    fn follow_paths(&mut self, program: &TermProgram, factors: &FactorValues) {
+        self.weights.resize(program.terms, PathWeight::EYE);
         self.weights[0] = PathWeight::EYE;
-        self.uncovered = None;
-        for (id, node) in nodes.iter().enumerate().skip(1) {
-            let parent = node.parent as usize;
-            let mut alive = true;
-            if node.factor.is_path() {
-                let above = self.weights[parent];
-                let followed = match above.depth {
-                    DEAD => None,
-                    _ => factors.follow(above, node.factor).ok(),
-                };
-                alive = followed.is_some();
-                self.weights[id] = followed.unwrap_or(PathWeight { depth: DEAD, ..above });
-            }
-            let value = product(self.values[parent], factors.value(node.factor));
-            self.values[id] = if alive { value } else { [0.0; 4] };
-            if node.marks.has(FRONTIERS) && self.uncovered.is_none() {
-                let reached = self.weights[parent].depth != DEAD;
-                let lives = match node.factor.kind() {
-                    Kind::Shadow => reached && !factors.value(node.factor).is_black(),
-                    _ => alive,
-                };
-                self.uncovered = lives.then_some(id as u32);
-            }
+        for &Step { id, parent, factor } in &program.paths {
+            let above = self.weights[parent as usize];
+            let dead = PathWeight { depth: DEAD, ..above };
+            self.weights[id as usize] = match above.depth {
+                DEAD => dead,
+                _ => factors.follow(above, program.factors[factor as usize]).unwrap_or(dead),
+            };
         }
     }
 }
 
-/// Both kinds of frontier.
-const FRONTIERS: Marks = Marks::FRONTIER.and(Marks::WITNESS);
-
+/// The fourth component only tells zero from not zero, and may be too large, never too small.
 #[inline(always)]
-fn product([r, g, b, _]: [f32; 4], factor: Rgb) -> [f32; 4] {
-    let Rgb([r, g, b]) = (Rgb([r, g, b]) * factor).map(|c| c.min(f32::MAX));
-    let lit = r != 0.0 || g != 0.0 || b != 0.0;
-    [r, g, b, if lit { 1.0 } else { 0.0 }]
+fn product(a: [f32; 4], b: [f32; 4]) -> [f32; 4] {
+    std::array::from_fn(|i| (a[i] * b[i]).min(f32::MAX))
 }
 
 #[cfg(test)]
@@ -98,17 +169,22 @@ mod tests {
 
     fn evaluate(scene: &Scene) -> TermValues {
         let mut values = TermValues::default();
-        values.evaluate(&trie().0, &FactorValues::new(scene));
+        values.evaluate(&TermProgram::new(&trie().0), &FactorValues::new(scene));
         values
+    }
+
+    fn uncovered(scene: &Scene) -> Option<u32> {
+        let program = TermProgram::new(&trie().0);
+        TermValues::default().uncovered(&program, &FactorValues::new(scene))
     }
 
     #[test]
     fn a_term_is_the_product_of_its_factors() {
         let values = evaluate(&scene(0.5));
         let [a, b, c] = trie().1.map(|id| values.values[id as usize]);
-        assert_eq!(a, [0.5, 0.25, 0.0, 1.0]);
-        assert_eq!(b, [0.25, 0.125, 0.0, 1.0]);
-        assert_eq!(c, [0.125, 0.0625, 0.0, 1.0]);
+        assert_eq!(a[..3], [0.5, 0.25, 0.0]);
+        assert_eq!(b[..3], [0.25, 0.125, 0.0]);
+        assert_eq!(c[..3], [0.125, 0.0625, 0.0]);
     }
 
     #[test]
@@ -131,11 +207,11 @@ mod tests {
     fn a_frontier_that_lives_is_found() {
         let mut scene = scene(0.5);
         scene.trace.cutoff = 0.2;
-        assert_eq!(evaluate(&scene).uncovered, None);
+        assert_eq!(uncovered(&scene), None);
         scene.trace.cutoff = 0.125;
-        assert!(evaluate(&scene).uncovered.is_some());
+        assert!(uncovered(&scene).is_some());
         scene.trace.depth = 2;
-        assert_eq!(evaluate(&scene).uncovered, None);
+        assert_eq!(uncovered(&scene), None);
     }
 
     #[test]
@@ -146,7 +222,7 @@ mod tests {
         let path = (0..60).fold(ROOT, |p, _| trie.intern(p, Factor::new(Kind::Reflect, 0, 0)));
         scene.trace.depth = 64;
         let mut values = TermValues::default();
-        values.evaluate(&trie, &FactorValues::new(&scene));
+        values.evaluate(&TermProgram::new(&trie), &FactorValues::new(&scene));
         assert_eq!(values.values[path as usize][0], f32::MAX);
     }
 }

@@ -1,0 +1,144 @@
+//! Folding of small made-up trees against sums done by hand.
+
+use super::*;
+use crate::forest::grow::Sink;
+use crate::forest::tree::{Ends, TileTrees};
+
+const ALL: [bool; LANES] = [true; LANES];
+
+fn node(material: u16, reflected: Branch) -> Node {
+    let ends = Ends::new(reflected, Branch::Zero, false);
+    Node { t: 1.0, primitive: 0, material, lights: 0, slot: 0, ends }
+}
+
+fn lit(light: u16, n_dot_l: f32, one_minus_r_dot_v: f32, crossed: u16) -> LightHit {
+    LightHit { light, crossed, n_dot_l, one_minus_r_dot_v }
+}
+
+/// A block whose lane `i` has two samples: a mirror that sees a matte surface through material 2 if
+/// `i` is below `mirrors`, else the background; and a miss.
+fn block(mirrors: usize) -> TileTrees {
+    let mut trees = TileTrees::default();
+    trees.block();
+    for lane in 0..LANES {
+        trees.sample(true);
+        if lane < mirrors {
+            trees.node(node(0, Branch::Grown));
+            trees.node(node(1, Branch::Zero));
+            trees.light(lit(0, 0.5, 0.25, 2), &[2, 2]);
+        } else {
+            let name = trees.node(node(0, Branch::Grown));
+            trees.missed(name, crate::forest::grow::Side::Reflected);
+        }
+        trees.sample(false);
+    }
+    trees.validate(3, 1);
+    trees
+}
+
+fn folded(trees: &TileTrees) -> (Trie, TransportTile) {
+    let mut folder = Folder::default();
+    folder.begin_tile();
+    folder.block(&mut trees.read(0), ALL, 2);
+    let shininess = [Some(8.0), Some(2.0), Some(1.0)];
+    let Folded { trie, tile } = folder.finish_tile(TransportTile::default(), 0.5, &shininess);
+    (trie.clone(), tile)
+}
+
+/// The coefficient of a product at every lane, wherever it is stored.
+fn coefficients(trie: &Trie, tile: &TransportTile, product: &[Factor]) -> [f32; LANES] {
+    let mut found = [0.0; LANES];
+    let is = |entry: usize| trie.factors(tile.terms[entry]) == product;
+    let block = tile.block(0);
+    for (&entry, plane) in block.entries.iter().zip(block.planes) {
+        if is(entry as usize) {
+            found = plane.0;
+        }
+    }
+    for single in block.singles.iter().filter(|s| is(s.entry())) {
+        found[single.lane()] = single.coefficient;
+    }
+    found
+}
+
+fn f(kind: Kind, index: u16) -> Factor {
+    Factor::new(kind, index, 0)
+}
+
+#[test]
+fn coefficients_are_the_sums_over_the_samples() {
+    for mirrors in [2, 9] {
+        let (trie, tile) = folded(&block(mirrors));
+        let at = |product: &[Factor]| coefficients(&trie, &tile, product);
+        let below = |value: f32, rest: f32| -> [f32; LANES] {
+            std::array::from_fn(|i| if i < mirrors { value } else { rest })
+        };
+        assert_eq!(at(&[f(Kind::Background, 0)]), [0.5; LANES]);
+        assert_eq!(at(&[f(Kind::Ambient, 0)]), [0.5; LANES]);
+        assert_eq!(at(&[f(Kind::Reflect, 0), f(Kind::Background, 0)]), below(0.0, 0.5));
+        let arriving =
+            [f(Kind::Reflect, 0), f(Kind::Light, 0), f(Kind::Shadow, 2), f(Kind::Shadow, 2)];
+        let [a, b, c, d] = arriving;
+        assert_eq!(at(&[a, b, c, d, f(Kind::Diffuse, 1)]), below(0.25, 0.0));
+        // 0.75² by the kernel: exact up to its rounding.
+        let highlight = at(&[a, b, c, d, f(Kind::Specular, 1)]);
+        for (found, truth) in highlight.iter().zip(below(0.5 * 0.5625, 0.0)) {
+            assert!((found - truth).abs() < 1e-7, "{found} {truth}");
+        }
+    }
+}
+
+#[test]
+fn few_lanes_are_singles_and_many_are_planes() {
+    let (_, few) = folded(&block(SPARSE_LANES as usize));
+    let (_, many) = folded(&block(SPARSE_LANES as usize + 1));
+    assert!(!few.singles.is_empty());
+    assert_eq!(many.singles.len(), 0);
+    assert!(many.planes.len() > few.planes.len());
+}
+
+#[test]
+fn ends_of_branches_are_marked_as_frontier() {
+    let (trie, _) = folded(&block(3));
+    let marked: Vec<Vec<Factor>> = (1..trie.nodes().len() as u32)
+        .filter(|&id| trie.nodes()[id as usize].marks.has(Marks::FRONTIER))
+        .map(|id| trie.factors(id))
+        .collect();
+    assert_eq!(marked.len(), 3, "{marked:?}");
+    assert!(marked.contains(&vec![f(Kind::Transmit, 0)]));
+    assert!(marked.contains(&vec![f(Kind::Reflect, 0), f(Kind::Reflect, 1)]));
+    assert!(marked.contains(&vec![f(Kind::Reflect, 0), f(Kind::Transmit, 1)]));
+}
+
+#[test]
+fn a_colored_coefficient_is_a_term_per_channel() {
+    let mut folder = Folder::default();
+    folder.begin_tile();
+    let term = folder.find(ROOT, f(Kind::Background, 0));
+    for lane in 0..LANES {
+        folder.add_colored(term, lane, Rgb([0.5, 0.25, 0.125]));
+        folder.add_colored(term, lane, Rgb([0.5, 0.5, 0.5]));
+    }
+    folder.starts.push(folder.ids.len() as u32);
+    folder.highlight_starts.push(0);
+    let Folded { trie, tile } = folder.finish_tile(TransportTile::default(), 0.5, &[]);
+    for (channel, sum) in [(0, 0.5), (1, 0.375), (2, 0.3125)] {
+        let product = [f(Kind::Background, 0), f(Kind::Channel, channel)];
+        assert_eq!(coefficients(trie, &tile, &product), [sum; LANES]);
+    }
+}
+
+#[test]
+fn a_new_exponent_gives_what_a_fresh_fold_gives() {
+    let trees = block(9);
+    let (_, mut kept) = folded(&trees);
+    let mut folder = Folder::default();
+    folder.begin_tile();
+    folder.block(&mut trees.read(0), ALL, 2);
+    let exponents = [Some(8.0), Some(31.0), Some(1.0)];
+    let fresh = folder.finish_tile(TransportTile::default(), 0.5, &exponents).tile;
+    assert_ne!(kept, fresh);
+    let any = HighlightPower::default().refold(&mut kept, &[None, Some(31.0), None], 0.5);
+    assert!(any);
+    assert_eq!(kept, fresh);
+}
