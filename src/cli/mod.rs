@@ -22,6 +22,7 @@ pub struct Arguments {
     #[command(subcommand)]
     mode: Option<Mode>,
     /// A scene file.
+    #[arg(value_parser = parse_scene)]
     scene: Option<PathBuf>,
 }
 
@@ -207,6 +208,15 @@ fn parse_size(text: &str) -> Result<[u32; 2], String> {
         .split_once(['x', 'X'])
         .and_then(|(w, h)| Some([w.trim().parse().ok()?, h.trim().parse().ok()?]));
     parts.ok_or_else(|| format!("`{text}` is not a size such as 1920x1080"))
+}
+
+/// The scene of a command line without a command: a word that is no file may be a mistyped command.
+fn parse_scene(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    if path.extension().is_none() && !path.exists() {
+        return Err("there is neither a command nor a scene file of this name".into());
+    }
+    Ok(path)
 }
 
 fn parse_memory(text: &str) -> Result<f64, String> {

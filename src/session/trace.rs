@@ -1,15 +1,15 @@
 //! Traces and folds a whole picture, tile by tile on all threads, within a budget of memory.
 
 use std::fmt;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::{Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
 
 use crate::film::layout::{LANES, Layout, Place, TILE_BLOCKS};
 use crate::fold::Folder;
-use crate::fold::transport::{Transport, TransportTile};
+use crate::fold::transport::{Highlights, Transport, TransportTile};
 use crate::fold::trie::Trie;
 use crate::forest::Forest;
 use crate::forest::grow::{Discard, Grower, RayCounts, Worker};
@@ -165,11 +165,46 @@ struct Slot {
     transport: TransportTile,
 }
 
-/// Bytes kept so far, memory of the earlier trace included, and the tiles whose trees may be
-/// released for others.
+impl Slot {
+    fn tree_bytes(&self) -> usize {
+        self.trees.as_ref().map_or(0, TileTrees::bytes)
+    }
+
+    fn list_bytes(&self) -> usize {
+        self.transport.highlights.as_ref().map_or(0, Highlights::bytes)
+    }
+}
+
+/// Bytes kept so far, and the tiles from which some may be taken back.
 struct Ledger {
+    /// Of trees, matrix and highlight lists, memory of the earlier trace included.
     bytes: usize,
-    kept: Vec<usize>,
+    /// Tiles with memory of an earlier trace; some may have used it by now.
+    old: Vec<usize>,
+    /// Tiles whose trees are kept.
+    trees: Vec<usize>,
+    /// Tiles whose highlight lists are kept.
+    lists: Vec<usize>,
+}
+
+impl Ledger {
+    /// Takes back what may go, the latest tile first, until the rest fits into the budget.
+    fn release(&mut self, slots: &[Mutex<Slot>], budget: usize) -> Result<(), TraceError> {
+        let slot = |tile: usize| slots[tile].lock().expect("no worker panicked");
+        while self.bytes > budget {
+            if let Some(tile) = self.old.pop() {
+                self.bytes -= slot(tile).old.take().map_or(0, |trees| trees.bytes());
+            } else if let Some(tile) = self.trees.pop() {
+                self.bytes -= slot(tile).trees.take().map_or(0, |trees| trees.bytes());
+            } else if let Some(tile) = self.lists.pop() {
+                let lists = slot(tile).transport.highlights.take();
+                self.bytes -= lists.map_or(0, |lists| lists.bytes());
+            } else {
+                return Err(TraceError::Memory { budget: budget as u64 });
+            }
+        }
+        Ok(())
+    }
 }
 
 /// What one worker counted.
@@ -191,7 +226,9 @@ impl<'a> Job<'a> {
         let layout = Layout::new(scene.picture.size);
         // Tiles of another cut are of other sizes: their memory would not fit.
         let reuse = if reuse.layout == layout { reuse } else { Forest::default() };
-        let ledger = Ledger { bytes: reuse.bytes(), kept: Vec::new() };
+        let old_tiles = (0..reuse.tiles.len()).collect();
+        let ledger =
+            Ledger { bytes: reuse.bytes(), old: old_tiles, trees: Vec::new(), lists: Vec::new() };
         let mut old = reuse.tiles.into_iter();
         let slot = |_| Mutex::new(Slot { old: old.next().flatten(), ..Slot::default() });
         progress.begin(layout.tiles() as u64);
@@ -277,46 +314,37 @@ impl<'a> Job<'a> {
         tile
     }
 
-    /// Keeps a tile, releasing trees, then its highlight lists, where the budget asks for it.
+    /// Keeps a tile. Where the budget asks for it, memory of the earlier trace goes first, then this
+    /// tile's trees and those of others, then highlight lists: the matrix alone is always kept.
     fn store(
         &self,
         tile: usize,
         trees: Option<&TileTrees>,
-        mut transport: TransportTile,
+        transport: TransportTile,
     ) -> Result<(), TraceError> {
-        let mut slot = self.slots[tile].lock().expect("no worker panicked");
-        let mut kept = slot.old.take();
-        let reused = kept.as_ref().map_or(0, TileTrees::bytes);
-        if let (Some(trees), room) = (trees, &mut kept) {
-            room.get_or_insert_default().assign(trees);
-        } else {
-            kept = None;
-        }
-        let lists = transport.highlights.as_ref().map_or(0, |h| h.bytes());
+        let old = self.slot(tile).old.take();
+        let reused = old.as_ref().map_or(0, TileTrees::bytes);
+        let trees = trees.map(|trees| {
+            let mut room = old.unwrap_or_default();
+            room.assign(trees);
+            room
+        });
+        // Whoever holds the ledger may lock a slot, never the other way round.
         let mut ledger = self.ledger.lock().expect("no worker panicked");
+        let mut slot = self.slot(tile);
+        (slot.trees, slot.transport) = (trees, transport);
         ledger.bytes -= reused;
-        ledger.bytes += transport.bytes() + lists + kept.as_ref().map_or(0, TileTrees::bytes);
-        if ledger.bytes > self.budget {
-            ledger.bytes -= kept.take().map_or(0, |t| t.bytes());
+        ledger.bytes += slot.transport.bytes() + slot.list_bytes() + slot.tree_bytes();
+        if slot.trees.is_some() {
+            ledger.trees.push(tile);
         }
-        while ledger.bytes > self.budget {
-            let Some(other) = ledger.kept.pop() else { break };
-            let trees = self.slots[other].lock().expect("no worker panicked").trees.take();
-            ledger.bytes -= trees.map_or(0, |t| t.bytes());
-        }
-        if ledger.bytes > self.budget {
-            transport.highlights = None;
-            ledger.bytes -= lists;
-        }
-        if ledger.bytes > self.budget {
-            return Err(TraceError::Memory { budget: self.budget as u64 });
-        }
-        if kept.is_some() {
-            ledger.kept.push(tile);
-        }
-        slot.trees = kept;
-        slot.transport = transport;
-        Ok(())
+        ledger.lists.push(tile);
+        drop(slot);
+        ledger.release(&self.slots, self.budget)
+    }
+
+    fn slot(&self, tile: usize) -> MutexGuard<'_, Slot> {
+        self.slots[tile].lock().expect("no worker panicked")
     }
 
     /// Numbers the terms canonically and puts the tiles together.

@@ -1,3 +1,7 @@
 //! The integration tests, one binary.
 
+#[cfg(test)]
+mod exact; // bit for bit, whatever the edits, threads and memory
+#[cfg(test)]
+mod faces; // what a person or a script sees
 mod truth; // the picture against other ways to know it

@@ -1,0 +1,184 @@
+//! Every parameter of a scene of all kinds costs what the table says, and gives the exact picture.
+
+use std::path::Path;
+
+use rayforest::progress::Progress;
+use rayforest::scene::path::parameters;
+use rayforest::scene::{Lens, Light, Scene, read};
+use rayforest::session::{Class, Session};
+
+use super::comes_alive::comes_alive;
+use super::table::{ROWS, Row, SCENE};
+use super::{assert_same_picture, open, set};
+
+fn all_kinds() -> Scene {
+    read::text(SCENE, Path::new("all-kinds.toml")).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The same from infinitely far away.
+fn parallel() -> Scene {
+    let mut scene = all_kinds();
+    scene.camera.lens = Lens::Parallel { height: 4.5 };
+    scene
+}
+
+fn matches(pattern: &str, path: &str) -> bool {
+    let (pattern, path): (Vec<_>, Vec<_>) =
+        (pattern.split('.').collect(), path.split('.').collect());
+    pattern.len() == path.len() && pattern.iter().zip(&path).all(|(p, s)| *p == "*" || p == s)
+}
+
+fn row_of<'a>(rows: &'a [Row], path: &str) -> Result<&'a Row, String> {
+    rows.iter().find(|row| matches(row.path, path)).ok_or(format!("`{path}` has no row"))
+}
+
+/// Makes one edit and holds it to its class, its rays, and the exact picture.
+fn edit_is(session: &mut Session, scene: Scene, expected: Class, what: &str) {
+    let expected = if scene == *session.scene() { Class::None } else { expected };
+    let kept = session.forest().clone();
+    assert_eq!(session.class_of(&scene), expected, "{what}: class beforehand");
+    let report = session.edit(scene, &Progress::default()).unwrap();
+    assert_eq!(report.class, expected, "{what}: {:?}", report.reason);
+    let fresh = open(session.scene(), 2);
+    assert_same_picture(session, &fresh, what);
+    if expected == Class::Retrace {
+        assert_eq!(report.rays, fresh.trace_report().rays, "{what}: rays");
+        assert_eq!(report.pixels, session.transport().layout.pixels(), "{what}: pixels");
+        assert!(session.forest() == fresh.forest(), "{what}: the trees are not the fresh ones");
+        assert!(
+            session.transport() == fresh.transport(),
+            "{what}: the matrix is not the fresh one"
+        );
+        if report.reason.is_some_and(|reason| reason.contains("comes alive")) {
+            assert!(
+                comes_alive(&kept, fresh.forest(), session.scene()),
+                "{what}: traced for nothing"
+            );
+        }
+    } else {
+        assert_eq!((report.rays.total(), report.pixels), (0, 0), "{what}: rays and pixels");
+        assert!(*session.forest() == kept, "{what}: trees were touched");
+        assert!(
+            !comes_alive(&kept, fresh.forest(), session.scene()),
+            "{what}: trees lack a branch"
+        );
+    }
+    session.transport().validate();
+}
+
+/// Takes every parameter of a scene through the steps of its row.
+fn hold_to_table(scene: &Scene) {
+    let first = open(scene, 2);
+    for parameter in parameters(scene) {
+        let row = row_of(ROWS, &parameter.path).unwrap_or_else(|e| panic!("{e}"));
+        let mut session = open(scene, 2);
+        for (step, (value, class)) in row.steps.iter().enumerate() {
+            let original = *value == "@";
+            let value = if original { parameter.value.as_str() } else { value };
+            let what = format!("{} = {value} (step {step})", parameter.path);
+            let mut edited = session.scene().clone();
+            set(&mut edited, &parameter.path, value);
+            edit_is(&mut session, edited, *class, &what);
+            if original {
+                assert_same_picture(&session, &first, &format!("{what}, the first picture"));
+            }
+        }
+    }
+}
+
+#[test]
+fn every_parameter_costs_what_the_table_says() {
+    hold_to_table(&all_kinds());
+}
+
+#[test]
+fn from_infinitely_far_away_too() {
+    hold_to_table(&parallel());
+}
+
+#[test]
+fn every_row_is_the_row_of_a_parameter() {
+    let mut paths: Vec<String> = parameters(&all_kinds()).into_iter().map(|p| p.path).collect();
+    paths.extend(parameters(&parallel()).into_iter().map(|p| p.path));
+    for row in ROWS {
+        let used = paths.iter().any(|p| row_of(ROWS, p).is_ok_and(|r| r.path == row.path));
+        assert!(used, "row `{}` is for nothing", row.path);
+    }
+}
+
+#[test]
+fn a_parameter_without_a_row_is_found() {
+    let without: Vec<Row> = ROWS
+        .iter()
+        .filter(|row| row.path != "materials.*.kloc")
+        .map(|row| Row { path: row.path, steps: row.steps })
+        .collect();
+    let lacking: Vec<String> = parameters(&all_kinds())
+        .iter()
+        .filter_map(|parameter| row_of(&without, &parameter.path).err())
+        .collect();
+    assert_eq!(lacking.len(), 6, "{lacking:?}");
+    assert_eq!(lacking[0], "`materials.tiles.kloc` has no row");
+}
+
+#[test]
+#[should_panic(expected = "class beforehand")]
+fn an_edit_of_another_class_than_expected_is_found() {
+    let mut session = open(&all_kinds(), 1);
+    let mut edited = session.scene().clone();
+    set(&mut edited, "materials.plain.shininess", "3");
+    edit_is(&mut session, edited, Class::Reshade, "on purpose");
+}
+
+#[test]
+fn names_cost_nothing() {
+    let mut session = open(&all_kinds(), 2);
+    let before = session.frame().clone();
+    let mut renamed = session.scene().clone();
+    renamed.lights.iter_mut().for_each(|light| light.name.push_str(" light"));
+    renamed.materials.iter_mut().rev().enumerate().for_each(|(i, m)| m.name = format!("m{i}"));
+    renamed.solids.iter_mut().for_each(|solid| solid.name.insert(0, 'a'));
+    edit_is(&mut session, renamed.clone(), Class::None, "names");
+    assert!(*session.scene() == renamed && *session.frame() == before);
+}
+
+#[test]
+fn what_is_added_removed_or_exchanged_is_traced() {
+    let scene = all_kinds();
+    type Alteration = fn(&mut Scene);
+    let changes: [(&str, Alteration); 7] = [
+        ("a light more", |s| s.lights.push(Light::new("third"))),
+        ("a light less", |s| drop(s.lights.pop())),
+        ("no light", |s| s.lights.clear()),
+        ("a solid less", |s| drop(s.solids.remove(1))),
+        ("another order of solids", |s| s.solids.swap(0, 3)),
+        ("a point becomes a direction", |s| s.lights[0].place = s.lights[1].place.clone()),
+        ("a parallel view", |s| s.camera.lens = Lens::Parallel { height: 4.5 }),
+    ];
+    let mut session = open(&scene, 2);
+    for (what, change) in changes {
+        let mut edited = scene.clone();
+        change(&mut edited);
+        edit_is(&mut session, edited, Class::Retrace, what);
+        edit_is(&mut session, scene.clone(), Class::Retrace, what);
+    }
+}
+
+#[test]
+fn several_parameters_at_once_cost_what_the_dearest_costs() {
+    let mut session = open(&all_kinds(), 2);
+    let mut edited = session.scene().clone();
+    set(&mut edited, "materials.plain.diffuse", "0.1");
+    set(&mut edited, "picture.exposure", "-1");
+    edit_is(&mut session, edited.clone(), Class::Reshade, "two");
+    set(&mut edited, "materials.mirror.shininess", "5");
+    set(&mut edited, "materials.glass.shininess", "5");
+    set(&mut edited, "materials.mirror.reflect", "0.1");
+    edit_is(&mut session, edited.clone(), Class::Refold, "three");
+    set(&mut edited, "materials.mirror.shininess", "50");
+    set(&mut edited, "materials.tiles.reflect", "0.5");
+    edit_is(&mut session, edited.clone(), Class::Retrace, "two with a branch");
+    set(&mut edited, "lights.key.on", "false");
+    set(&mut edited, "camera.fov_degrees", "41");
+    edit_is(&mut session, edited, Class::Retrace, "two with the camera");
+}

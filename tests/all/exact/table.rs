@@ -1,0 +1,271 @@
+//! What every parameter of the scene of all kinds costs, value by value.
+
+use rayforest::session::Class::{self, Refold, Reshade, Retrace};
+
+/// A scene with every kind of light, material and solid.
+pub(super) const SCENE: &str = r#"
+version = 1
+ambient_light = [0.9, 1.0, 0.8]
+
+[picture]
+size = [40, 26]
+exposure = 0.25
+
+[camera]
+eye = [0.2, -7, 2.6]
+target = [0, 0, 0.7]
+up = [0, 0, 1]
+fov_degrees = 40
+
+[background]
+color = [0.2, 0.3, 0.5]
+
+[trace]
+samples = 2
+depth = 4
+cutoff = 0.01
+
+[lights]
+key = { point = [-4, -5, 7], color = [1, 0.9, 0.8], intensity = 0.8 }
+sun = { direction = [-0.5, 0.4, -1], intensity = [0.2, 0.25, 0.3] }
+
+[materials.tiles]
+texture = { checker = { a = [0.9, 0.8, 0.2], b = [0.5, 0.1, 0.1], size = 0.7 } }
+
+[materials.plain]
+color = [0.3, 0.6, 0.4]
+specular = 0.3
+
+[materials.mirror]
+color = [0.9, 0.9, 0.95]
+diffuse = 0.3
+specular = 0.6
+shininess = 80
+reflect = 0.5
+
+[materials.glass]
+ambient = 0
+diffuse = 0.02
+specular = 0.8
+shininess = 150
+reflect = 0.12
+transmit = 0.8
+filter = [1, 0.7, 0.6]
+
+[materials.lamp]
+color = [1, 0.5, 0.2]
+emission = [0.4, 0.3, 0.1]
+
+[materials.brass]
+color = [0.9, 0.65, 0.25]
+specular = 0.7
+metallic = 1
+reflect = [0.2, 0.14, 0.05]
+
+[solids]
+floor = { plane = { normal = [0, 0, 1], offset = 0 }, material = "tiles" }
+ball = { sphere = { center = [-1.4, 1.2, 0.9], radius = 0.9 }, material = "mirror" }
+bulb = { sphere = { center = [0.2, -1.6, 0.8], radius = 0.7 }, material = "glass" }
+cube = { box = { min = [0, 0, 0], max = [0.8, 0.8, 1.2] }, material = "plain" }
+screen = { polygon = { points = [[-3, 3, 0], [3, 3, 0], [3, 3, 2], [-3, 3, 2]] }, material = "lamp" }
+ring = { knot = { turns = [2, 3], tube = 0.3, segments = [30, 8] }, material = "brass", scale = 0.4, translate = [1.6, -1, 0.6] }
+flake = { sphereflake = { center = [-1.15, -1.5, 0.8], radius = 0.3, levels = 2 }, material = "mirror" }
+"#;
+
+/// A parameter and what some values of it, set one after another, cost. `*` stands for any name,
+/// `@` for the value it had at first. A value that it has already costs nothing and stands for
+/// `Class::None`.
+pub(super) struct Row {
+    pub(super) path: &'static str,
+    pub(super) steps: &'static [(&'static str, Class)],
+}
+
+const fn row(path: &'static str, steps: &'static [(&'static str, Class)]) -> Row {
+    Row { path, steps }
+}
+
+/// Light, colours and coefficients: instant whatever the value, zero included.
+const COLOR: &[(&str, Class)] = &[
+    ("0", Reshade),
+    ("0.004", Reshade),
+    ("1", Reshade),
+    ("[0.3, 0, 1.5]", Reshade),
+    ("1e6", Reshade),
+    ("@", Reshade),
+];
+/// An opaque material that lies between some point and a light: the least transmission lets light
+/// through where there was shadow.
+const LETS_LIGHT_THROUGH: &[(&str, Class)] = &[
+    ("0.004", Retrace),
+    ("0", Reshade),
+    ("0.004", Reshade),
+    ("0.5", Retrace),
+    ("[0, 0.2, 0]", Reshade),
+    ("0", Reshade),
+    ("0.5", Reshade),
+    ("@", Reshade),
+];
+/// A visible matt material: below the cut-off its mirror image stays out of the picture.
+const BECOMES_MIRROR: &[(&str, Class)] = &[
+    ("0.004", Reshade),
+    ("0.01", Retrace),
+    ("0.009", Reshade),
+    ("0.5", Retrace),
+    ("0", Reshade),
+    ("[0, 0.004, 0]", Reshade),
+    ("0.5", Reshade),
+    ("@", Reshade),
+];
+const EXPONENT: &[(&str, Class)] =
+    &[("0", Refold), ("1", Refold), ("7.5", Refold), ("1e6", Refold), ("@", Refold)];
+const VECTOR: &[(&str, Class)] = &[("[0.1, -0.3, 0.8]", Retrace), ("@", Retrace)];
+const TURN: &[(&str, Class)] = &[("[0, 0, 15]", Retrace), ("@", Retrace)];
+const SCALE: &[(&str, Class)] =
+    &[("1.1", Retrace), ("[1, 0.9, 1]", Retrace), ("0.9", Retrace), ("@", Retrace)];
+const LENGTH: &[(&str, Class)] =
+    &[("0.25", Retrace), ("1", Retrace), ("1.5", Retrace), ("@", Retrace)];
+
+/// Every parameter of [`SCENE`]; the row that names more of a path comes first.
+pub(super) const ROWS: &[Row] = &[
+    row("ambient_light", COLOR),
+    row("background.color", COLOR),
+    row("camera.eye", &[("[0.3, -7, 2.6]", Retrace), ("@", Retrace)]),
+    row("camera.target", VECTOR),
+    row("camera.up", &[("[0.1, 0, 1]", Retrace), ("@", Retrace)]),
+    row("camera.fov_degrees", &[("50", Retrace), ("1", Retrace), ("@", Retrace)]),
+    row("camera.height", &[("5", Retrace), ("0.5", Retrace), ("@", Retrace)]),
+    row("picture.size", &[("[33, 20]", Retrace), ("[1, 1]", Retrace), ("@", Retrace)]),
+    row(
+        "picture.exposure",
+        &[("0", Reshade), ("-30", Reshade), ("1", Reshade), ("30", Reshade), ("@", Reshade)],
+    ),
+    row("trace.samples", &[("1", Retrace), ("3", Retrace), ("@", Retrace)]),
+    row(
+        "trace.depth",
+        &[
+            ("2", Reshade),
+            ("0", Reshade),
+            ("1", Reshade),
+            ("@", Reshade),
+            ("5", Retrace),
+            ("@", Reshade),
+            ("5", Reshade),
+        ],
+    ),
+    row(
+        "trace.cutoff",
+        &[
+            ("0.5", Reshade),
+            ("1", Reshade),
+            ("@", Reshade),
+            ("0.0001", Retrace),
+            ("@", Reshade),
+            ("0.0001", Reshade),
+            ("0", Reshade), // the depth of 4 is the tighter limit here
+            ("@", Reshade),
+        ],
+    ),
+    row("lights.*.color", COLOR),
+    row("lights.*.intensity", COLOR),
+    row("lights.*.on", &[("false", Reshade), ("true", Reshade)]),
+    row("lights.key.point", &[("[-4, -5, 7.5]", Retrace), ("@", Retrace)]),
+    row("lights.sun.direction", &[("[0.5, 0.4, -1]", Retrace), ("@", Retrace)]),
+    row("materials.*.color", COLOR),
+    row("materials.*.texture.checker.a", COLOR),
+    row("materials.*.texture.checker.b", COLOR),
+    row("materials.*.texture.checker.size", LENGTH),
+    row("materials.*.kloc", COLOR),
+    row("materials.*.ambient", COLOR),
+    row("materials.*.diffuse", COLOR),
+    row("materials.*.specular", COLOR),
+    row("materials.*.emission", COLOR),
+    row(
+        "materials.*.metallic",
+        &[("0", Reshade), ("0.5", Reshade), ("1", Reshade), ("@", Reshade)],
+    ),
+    row("materials.*.shininess", EXPONENT),
+    row("materials.*.ior", &[("1", Retrace), ("0.8", Retrace), ("2.4", Retrace), ("@", Retrace)]),
+    row(
+        "materials.mirror.reflect",
+        &[
+            ("0.2", Reshade),
+            ("0", Reshade),
+            ("0.004", Reshade),
+            ("[0.5, 0, 0.01]", Reshade),
+            ("@", Reshade),
+            ("1", Retrace),
+            ("10", Reshade), // as a weight not more than 1
+            ("@", Reshade),
+        ],
+    ),
+    row(
+        "materials.brass.reflect",
+        &[("0", Reshade), ("0.1", Reshade), ("@", Reshade), ("0.9", Retrace), ("@", Reshade)],
+    ),
+    row(
+        "materials.glass.reflect",
+        &[
+            ("0.06", Reshade),
+            ("0", Reshade),
+            ("0.005", Reshade),
+            ("@", Reshade),
+            ("0.5", Retrace),
+            ("@", Reshade),
+            ("0.5", Reshade),
+        ],
+    ),
+    row("materials.*.reflect", BECOMES_MIRROR),
+    row(
+        "materials.glass.transmit",
+        &[
+            ("0.4", Reshade),
+            ("0.001", Reshade),
+            ("0", Reshade),
+            ("[0, 0.8, 0]", Reshade),
+            ("@", Reshade),
+            ("1", Retrace),
+            ("0", Reshade),
+            ("@", Reshade),
+        ],
+    ),
+    // No solid lies below the floor or behind the screen as seen from a light.
+    row(
+        "materials.tiles.transmit",
+        &[("0.004", Reshade), ("0.5", Retrace), ("0", Reshade), ("0.5", Reshade), ("@", Reshade)],
+    ),
+    row("materials.*.transmit", LETS_LIGHT_THROUGH),
+    row(
+        "materials.glass.filter",
+        &[
+            ("0.3", Reshade),
+            ("0", Reshade),
+            ("[0, 0, 0.6]", Reshade),
+            ("@", Reshade),
+            ("2", Retrace),
+            ("@", Reshade),
+            ("2", Reshade),
+        ],
+    ),
+    // Nothing passes through the others, whatever its colour would be.
+    row("materials.*.filter", COLOR),
+    row("solids.*.material", &[("plain", Retrace), ("glass", Retrace), ("@", Retrace)]),
+    row("solids.*.translate", VECTOR),
+    row("solids.*.rotate_degrees", TURN),
+    row("solids.*.scale", SCALE),
+    row("solids.floor.plane.normal", &[("[0.1, 0, 1]", Retrace), ("@", Retrace)]),
+    row("solids.floor.plane.offset", &[("-0.1", Retrace), ("1", Retrace), ("@", Retrace)]),
+    row("solids.*.sphere.center", VECTOR),
+    row("solids.*.sphere.radius", LENGTH),
+    row("solids.cube.box.min", &[("[-0.1, 0, 0]", Retrace), ("@", Retrace)]),
+    row("solids.cube.box.max", &[("[0.8, 0.8, 1.5]", Retrace), ("@", Retrace)]),
+    row(
+        "solids.screen.polygon.points",
+        &[("[[-3, 3, 0], [3, 3, 0], [0, 3, 2]]", Retrace), ("@", Retrace)],
+    ),
+    row("solids.ring.knot.turns", &[("[3, 2]", Retrace), ("@", Retrace)]),
+    row("solids.ring.knot.tube", LENGTH),
+    row("solids.ring.knot.segments", &[("[24, 9]", Retrace), ("@", Retrace)]),
+    row("solids.flake.sphereflake.center", VECTOR),
+    row("solids.flake.sphereflake.radius", LENGTH),
+    row("solids.flake.sphereflake.levels", &[("1", Retrace), ("3", Retrace), ("@", Retrace)]),
+];

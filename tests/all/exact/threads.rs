@@ -1,0 +1,78 @@
+//! Same bytes whatever the number of threads; a refold is what a fresh fold is.
+
+use rayforest::forest::tree::TileTrees;
+use rayforest::progress::Progress;
+use rayforest::session::{Class, Session};
+
+use super::{SHIPPED, assert_same_picture, open, set, shipped};
+
+fn validate(session: &Session) {
+    let scene = session.scene();
+    session.forest().validate(scene.materials.len(), scene.lights.len());
+    session.transport().validate();
+}
+
+#[test]
+fn one_two_and_seven_threads_give_the_same_bytes_on_every_scene() {
+    for name in SHIPPED {
+        let scene = shipped(name, [100, 70], 2);
+        let one = open(&scene, 1);
+        validate(&one);
+        for threads in [2, 7] {
+            let many = open(&scene, threads);
+            assert_same_picture(&one, &many, &format!("{name}, {threads} threads"));
+            assert!(one.transport() == many.transport(), "{name}: another matrix");
+            assert!(one.forest() == many.forest(), "{name}: other trees");
+            assert_eq!(one.trace_report().rays, many.trace_report().rays, "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_refold_is_a_fresh_fold_on_every_scene() {
+    for name in SHIPPED {
+        let mut session = open(&shipped(name, [70, 40], 3), 2);
+        let mut scene = session.scene().clone();
+        for (index, shininess) in ["3", "0", "77.5", "1e6", "12"].iter().enumerate() {
+            let material = scene.materials[index % scene.materials.len()].name.clone();
+            set(&mut scene, &format!("materials.{material}.shininess"), shininess);
+            let report = session.edit(scene.clone(), &Progress::default()).unwrap();
+            assert_eq!((report.class, report.rays.total()), (Class::Refold, 0), "{name}");
+            validate(&session);
+        }
+        let fresh = open(&scene, 2);
+        assert!(session.transport() == fresh.transport(), "{name}: refolded, not as folded");
+        assert_same_picture(&session, &fresh, name);
+    }
+}
+
+#[test]
+fn matrices_of_other_exponents_differ() {
+    let scene = shipped("whitted", [40, 22], 1);
+    let mut other = scene.clone();
+    set(&mut other, "materials.mirror.shininess", "99.9");
+    assert!(open(&scene, 1).transport() != open(&other, 1).transport());
+    assert!(open(&scene, 1).transport() == open(&scene, 1).transport());
+}
+
+#[test]
+fn trees_of_a_tile_are_the_kept_ones() {
+    let session = open(&shipped("whitted", [70, 40], 2), 2);
+    for (tile, kept) in session.forest().tiles.iter().enumerate() {
+        let trees: TileTrees = session.trees(tile, &Progress::default()).unwrap();
+        assert!(Some(&trees) == kept.as_ref());
+    }
+}
+
+#[test]
+fn tracing_again_into_the_same_memory_changes_nothing() {
+    for name in ["whitted", "gems"] {
+        let scene = shipped(name, [70, 40], 2);
+        let mut session = open(&scene, 2);
+        session.trace_again(&Progress::default()).unwrap();
+        let fresh = open(&scene, 2);
+        assert_same_picture(&session, &fresh, name);
+        assert!(session.forest() == fresh.forest() && session.transport() == fresh.transport());
+        validate(&session);
+    }
+}
