@@ -1,15 +1,45 @@
 //! Rayforest traces a scene once, keeps every pixel's ray tree, and from then on re-evaluates only
 //! the shading.
 //!
-//! The road of the data, each arrow one function that takes `&` of its left and gives its right:
+//! # The one idea
+//!
+//! The colour of a ray tree is a sum of products of *geometry* (cosines, visibilities), fixed once
+//! traced, and *parameters* (colours, coefficients, lights), which people edit. Collect, per pixel,
+//! everything with the same product of parameters, and the picture is a sparse matrix, the
+//! [`Transport`](fold::transport::Transport), times a list of products, the *terms*. An edit
+//! evaluates the terms and multiplies.
+//!
+//! # The road of the data
+//!
+//! Each arrow is one function that takes `&` of its left and gives its right; nothing flows back.
 //!
 //! ```text
 //! scene text → Scene → Geometry → grow → Forest → fold → Transport → shade → Film → develop → file
 //! ```
 //!
-//! The `mod` list below is the map. It stands in the order of the floors, ground first: **a file
-//! names only modules of floors below its own** (and its own module's files); a test reads this list
-//! and the `use` paths and holds every file to it.
+//! # What always holds
+//!
+//! * **Live equals fresh.** After any history of edits the picture is, bit for bit, the one that a
+//!   new process traces from the same scene. Tests hold it with random histories.
+//! * **One rule of liveness**, [`follow`](scene::factor::FactorValues::follow): growing stops by it,
+//!   and shading gives the value 0 by it to a stored branch that would not grow today. Where growth
+//!   stopped, the trees keep a *frontier* record, and the terms a frontier mark; an edit that makes a
+//!   frontier live is the only edit of a colour or coefficient that costs rays.
+//! * **Order.** Terms are numbered by their factors along the path, never by discovery; a pixel is
+//!   summed from +0 in that order, its planes first, then its single coefficients; vector lanes run
+//!   across pixels. Thread count, tile order, released memory and edits therefore change no bit.
+//! * **Bits.** No fused multiply-add, no power, logarithm or sine of the platform in what reaches a
+//!   coefficient; no number that depends on a running counter.
+//! * **Geometry is f64** and holds no epsilon with a length in it. The f32 hierarchy only leaves out
+//!   what cannot be hit.
+//! * **Absences.** `shade` never sees `geometry`; nothing below `cli` prints; nothing is `unsafe`;
+//!   there are no globals.
+//!
+//! # The map
+//!
+//! The `mod` list below stands in the order of the floors, ground first: **a file names only modules
+//! of floors below its own** (and its own module's files). A test reads this list and the paths in
+//! every file and holds them to it.
 
 // ground
 pub mod color;

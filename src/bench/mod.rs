@@ -13,7 +13,7 @@ use crate::forest::grow::RayCounts;
 use crate::progress::Progress;
 use crate::scene::path::{parameters, set};
 use crate::scene::range::Kind;
-use crate::scene::{Scene, path};
+use crate::scene::Scene;
 use crate::session::trace::{TraceError, TraceReport, trace_only};
 use crate::session::{Class, Options, Session};
 
@@ -229,12 +229,11 @@ impl Edits {
     }
 }
 
-/// The scene with one coefficient multiplied by 0.25 … 1.5, or raised from 0.
+/// The scene with one coefficient between 0.05 and 0.95.
 fn random_edit(scene: &Scene, name: &str, random: &mut Random) -> Option<Scene> {
     let mut edited = scene.clone();
     let value = format!("{:.3}", 0.05 + 0.9 * random.unit());
-    let set: Result<(), path::PathError> = set(&mut edited, name, &value);
-    set.ok().map(|()| edited)
+    set(&mut edited, name, &value).ok().map(|()| edited)
 }
 
 fn changed_share(a: &Frame, b: &Frame) -> f64 {

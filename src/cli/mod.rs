@@ -11,6 +11,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::color::Rgb;
+use crate::scene::energy::{Overbright, overbright};
 use crate::scene::{Scene, path, read};
 use crate::session::Options;
 
@@ -117,6 +119,13 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
 impl Check {
     fn run(self) -> Result<(), Failure> {
         let scene = read_scene(&self.scene)?;
+        for Overbright { material, sum: Rgb([r, g, b]) } in overbright(&scene) {
+            say(&format!(
+                "warning: material {}: kloc·(ambient + diffuse) + reflect + transmit is \
+                 [{r:.2}, {g:.2}, {b:.2}], above 1: it gives back more light than it gets",
+                scene.materials[material].name
+            ));
+        }
         print(&format!(
             "{}: no mistakes; {} solids, {} materials, {} lights",
             self.scene.display(),

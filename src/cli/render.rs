@@ -1,6 +1,6 @@
 //! `rayforest render`: trace, edit as a slider would, write the picture and the statistics.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde_json::{Value, json};
@@ -40,6 +40,9 @@ impl Render {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let format = Format::of(&self.output, self.bits == "16").map_err(Failure::input)?;
         check_writable(&self.output).map_err(Failure::job)?;
+        if let Some(file) = self.stats.as_deref().filter(|f| *f != Path::new("-")) {
+            check_writable(file).map_err(Failure::job)?;
+        }
         let mut scene = read_scene(&self.scene)?;
         let options = self.common.apply(&mut scene)?;
         for assignment in &self.set {
@@ -68,7 +71,7 @@ impl Render {
         }
         let report = session.trace_report();
         let rays = report.rays.total() as f64 / 1e6;
-        if self.stats.as_deref() != Some("-".as_ref()) {
+        if self.stats.as_deref() != Some(Path::new("-")) {
             let shown = self.output.display();
             print(&format!("{shown}: traced in {:.2} s, {rays:.2} million rays", report.seconds));
         }

@@ -12,7 +12,8 @@ pub enum Branch {
     Missed,
     /// Frontier: its factor is zero.
     Zero,
-    /// Frontier: its parameter weight is below the cut-off.
+    /// Frontier: its parameter weight, which follows from the factors of its path, is below the
+    /// cut-off.
     Weight,
     /// Frontier: the depth limit.
     Depth,

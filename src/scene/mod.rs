@@ -8,6 +8,7 @@ pub mod change;
 pub mod check;
 mod defaults;
 mod direction;
+pub mod energy;
 pub mod factor;
 pub mod fields;
 pub mod mesh;

@@ -4,7 +4,7 @@ use crate::color::Rgb;
 use crate::film::layout::{LANES, Layout, Place};
 use crate::fold::Folder;
 use crate::forest::grow::Grower;
-use crate::forest::tree::{BLOCKED, Branch, TileTrees};
+use crate::forest::tree::{BLOCKED, Branch, Reader, TileTrees};
 use crate::geometry::Geometry;
 use crate::progress::{Cancelled, Progress};
 use crate::scene::Scene;
@@ -84,14 +84,11 @@ pub fn pixel(
     let covered: [bool; LANES] =
         std::array::from_fn(|lane| layout.pixel(Place { lane, ..place }).is_some());
     let before = covered[..place.lane].iter().filter(|c| **c).count() as u32 * samples;
-    let mut reader = Walk { trees: &trees, node: 0, light: 0, crossing: 0, geometry };
-    for sample in 0..before {
-        if trees.hits[sample as usize] {
-            reader.node();
-        }
+    let mut walk = Walk { reader: trees.read(0), geometry };
+    for _ in 0..before {
+        walk.sample();
     }
-    let hits = before..before + samples;
-    let samples_trees = hits.map(|s| trees.hits[s as usize].then(|| reader.node())).collect();
+    let samples_trees = (0..samples).map(|_| walk.sample()).collect();
     let (terms, light) = terms(scene, &trees, covered, place.lane);
     Ok(Inspection { light, samples: samples_trees, terms })
 }
@@ -132,18 +129,19 @@ fn terms(
 
 /// Reads nodes in preorder and builds them into trees.
 struct Walk<'a> {
-    trees: &'a TileTrees,
-    node: usize,
-    light: usize,
-    crossing: usize,
+    reader: Reader<'a>,
     geometry: &'a Geometry,
 }
 
 impl Walk<'_> {
+    /// The tree of the next sample, if its ray met the scene.
+    fn sample(&mut self) -> Option<InspectedNode> {
+        self.reader.sample().then(|| self.node())
+    }
+
     /// The next tree. A tree is at most 64 deep, and so is the recursion.
     fn node(&mut self) -> InspectedNode {
-        let node = self.trees.nodes[self.node];
-        self.node += 1;
+        let node = self.reader.node();
         let lights = (0..node.lights).map(|_| self.light()).collect();
         let reflected = self.branch(node.ends.reflected());
         let transmitted = self.branch(node.ends.transmitted());
@@ -165,18 +163,13 @@ impl Walk<'_> {
     }
 
     fn light(&mut self) -> InspectedLight {
-        let hit = self.trees.lights[self.light];
-        self.light += 1;
-        let blocked = hit.crossed == BLOCKED;
-        let count = if blocked { 1 } else { usize::from(hit.crossed) };
-        let crossed = self.trees.crossings[self.crossing..self.crossing + count].to_vec();
-        self.crossing += count;
+        let (hit, crossed) = self.reader.light();
         InspectedLight {
             light: hit.light,
-            blocked,
+            blocked: hit.crossed == BLOCKED,
             n_dot_l: hit.n_dot_l,
             r_dot_v: 1.0 - hit.one_minus_r_dot_v,
-            crossed,
+            crossed: crossed.to_vec(),
         }
     }
 }

@@ -1,0 +1,45 @@
+//! Materials that give back more light than they get, which facing surfaces multiply.
+
+use super::{Material, Scene};
+use crate::color::Rgb;
+
+/// A sum of coefficients may exceed 1 by this, the rounding of a few `f32`.
+const ROUNDING: f32 = 1e-5;
+
+/// A material whose `kloc·(ambient + diffuse) + reflect + transmit` exceeds 1 in a channel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Overbright {
+    /// Index into `Scene::materials`.
+    pub material: usize,
+    /// The sum, per channel.
+    pub sum: Rgb,
+}
+
+/// Every material of a scene that gives back more than it gets.
+pub fn overbright(scene: &Scene) -> Vec<Overbright> {
+    let sums = scene.materials.iter().map(returned).enumerate();
+    let above = sums.filter(|(_, sum)| sum.max_channel() > 1.0 + ROUNDING);
+    above.map(|(material, sum)| Overbright { material, sum }).collect()
+}
+
+fn returned(material: &Material) -> Rgb {
+    let local = material.kloc * (material.ambient + material.diffuse);
+    local + material.reflect + material.transmit
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sum_above_one_in_any_channel_is_found() {
+        let mut scene = Scene { materials: vec![Material::new("a")], ..Scene::default() };
+        assert_eq!(overbright(&scene), []);
+        scene.materials[0].reflect = Rgb([0.2, 0.1, 0.25]);
+        let found = overbright(&scene);
+        assert_eq!(found.len(), 1);
+        assert!((found[0].sum.0[2] - 1.05).abs() < 1e-6);
+        scene.materials[0].kloc = Rgb::grey(0.5);
+        assert_eq!(overbright(&scene), []);
+    }
+}
