@@ -30,11 +30,31 @@ pub fn exp2_nonpositive(p: f32) -> f32 {
     if p >= EXP2_FLUSH { q * scale } else { 0.0 }
 }
 
-/// log2(cos β) from `x = 1 − cos β` in [0, 1): ≤ 0, correctly scaled for tiny angles, where the
-/// cosine itself would have lost them. Relative error of an f32, for x ≥ 1e-9.
+/// log2(cos β) from `x = 1 − cos β` in [0, 1): ≤ 0, and accurate for tiny angles too, where the
+/// cosine itself would have lost them: relative error 1e-7 for x ≥ 1e-9, absolute below 2e-16
+/// elsewhere. Branch-free: a loop over it vectorises.
+///
+/// In f64: 1 − x = m·2^e with m within √2 of 1, and log m by its series in s = (m − 1)/(m + 1).
 #[inline(always)]
 pub fn log2_of_cosine(one_minus_cosine: f32) -> f32 {
-    libm::log2(1.0 - f64::from(one_minus_cosine)) as f32
+    const MANTISSA: u64 = (1 << 52) - 1;
+    const ONE: u64 = 1023 << 52;
+    let bits = (1.0 - f64::from(one_minus_cosine)).to_bits();
+    let m = f64::from_bits(bits & MANTISSA | ONE);
+    let large = m > std::f64::consts::SQRT_2;
+    let exponent = (bits >> 52) as i32 - if large { 1022 } else { 1023 };
+    let m = if large { m * 0.5 } else { m };
+    let s = (m - 1.0) / (m + 1.0);
+    let z = s * s;
+    let mut q = 1.0 / 15.0;
+    q = q * z + 1.0 / 13.0;
+    q = q * z + 1.0 / 11.0;
+    q = q * z + 1.0 / 9.0;
+    q = q * z + 1.0 / 7.0;
+    q = q * z + 1.0 / 5.0;
+    q = q * z + 1.0 / 3.0;
+    q = q * z + 1.0;
+    (f64::from(exponent) + q * s * (2.0 * std::f64::consts::LOG2_E)) as f32
 }
 
 /// 2^stops, the factor of an exposure.
@@ -58,6 +78,20 @@ mod tests {
         assert_eq!(exp2_nonpositive(0.0), 1.0);
         assert_eq!(exp2_nonpositive(-60.001), 0.0);
         assert_eq!(exp2_nonpositive(f32::NEG_INFINITY), 0.0);
+    }
+
+    #[test]
+    fn logarithm_of_a_cosine_is_accurate_to_an_f32() {
+        let mut worst = 0.0f64;
+        for i in 0..1_000_000 {
+            let x = (i as f32 / 1e6).powi(3);
+            let truth = f64::ln_1p(-f64::from(x)) / std::f64::consts::LN_2;
+            let ours = f64::from(log2_of_cosine(x));
+            assert!(ours <= 0.0, "x {x} gives {ours}");
+            worst = worst.max((ours - truth).abs() / (truth.abs() + 1e-9));
+        }
+        assert!(worst < 2e-7, "worst relative error {worst:e}");
+        assert_eq!(log2_of_cosine(0.0), 0.0);
     }
 
     #[test]

@@ -11,9 +11,9 @@ use crate::film::{Film, Frame};
 use crate::fold::transport::{HighlightList, Transport};
 use crate::forest::grow::RayCounts;
 use crate::progress::Progress;
+use crate::scene::Scene;
 use crate::scene::path::{parameters, set};
 use crate::scene::range::Kind;
-use crate::scene::Scene;
 use crate::session::trace::{TraceError, TraceReport, trace_only};
 use crate::session::{Class, Options, Session};
 

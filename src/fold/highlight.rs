@@ -4,7 +4,7 @@ use fearless_simd::{Level, dispatch};
 
 use super::transport::{HighlightList, Highlights, TransportTile};
 use crate::film::layout::LANES;
-use crate::math::exp2_nonpositive;
+use crate::math::{exp2_nonpositive, log2_of_cosine};
 
 /// Turns kept angles into coefficients.
 pub struct HighlightPower {
@@ -19,6 +19,11 @@ impl Default for HighlightPower {
 }
 
 impl HighlightPower {
+    /// Turns every 1 − cos β into log2 cos β.
+    pub fn take_logarithms(&self, angles: &mut [f32]) {
+        dispatch!(self.level, _simd => logarithms_of(angles));
+    }
+
     /// Computes the highlight coefficients of a tile, of the materials that have an exponent in
     /// `shininess`: `weight · Σ cos^shininess β` per term and lane, samples summed in their order.
     /// cos^n counts as 0 below 2^−60. Gives whether there were any.
@@ -104,5 +109,12 @@ fn put(tile: &mut TransportTile, list: &HighlightList, packed: [f32; LANES]) {
 fn powers_of(log2_cosines: &[f32], exponent: f32, powers: &mut [f32]) {
     for (power, l) in powers.iter_mut().zip(log2_cosines) {
         *power = exp2_nonpositive(exponent * l);
+    }
+}
+
+#[inline(always)]
+fn logarithms_of(angles: &mut [f32]) {
+    for angle in angles {
+        *angle = log2_of_cosine(*angle);
     }
 }

@@ -16,7 +16,6 @@ use trie::{Marks, ROOT, Trie};
 use crate::color::Rgb;
 use crate::film::layout::LANES;
 use crate::forest::tree::{BLOCKED, Branch, LightHit, Node, Reader};
-use crate::math::log2_of_cosine;
 use crate::scene::factor::{Factor, Kind};
 
 /// Folds the blocks of one tile after another; one per thread, its memory reused.
@@ -42,6 +41,8 @@ pub struct Folder {
     starts: Vec<u32>,
     highlights: Vec<HighlightSample>,
     highlight_starts: Vec<u32>,
+    order: Vec<u32>,
+    sorted: Vec<HighlightSample>,
     power: HighlightPower,
 }
 
@@ -51,15 +52,18 @@ struct Lookup {
     parent: u32,
     factor: Factor,
     id: u32,
+    /// The slot of a term, if `stamp` is the present block's.
+    slot: u32,
+    stamp: u32,
 }
 
 /// One sample's highlight, before it is sorted into its list.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct HighlightSample {
     slot: u32,
     material: u16,
     lane: u16,
-    log2_cosine: f32,
+    one_minus_cosine: f32,
 }
 
 /// A tile just folded: its part of the matrix in ids of its own trie, and that trie.
@@ -76,7 +80,7 @@ impl Folder {
         self.trie.clear();
         self.memo.clear();
         self.slots.clear();
-        self.stamp = 0;
+        self.stamp = 1;
         self.ids.clear();
         self.planes.clear();
         self.masks.clear();
@@ -90,7 +94,6 @@ impl Folder {
 
     /// Folds the trees of a block: `samples` of each lane that `covered` says to hold a pixel.
     pub fn block(&mut self, reader: &mut Reader, covered: [bool; LANES], samples: u32) {
-        self.stamp += 1;
         for (lane, _) in covered.iter().enumerate().filter(|(_, c)| **c) {
             for _ in 0..samples {
                 self.position = 0;
@@ -101,6 +104,24 @@ impl Folder {
                 }
             }
         }
+        self.end_block();
+    }
+
+    /// Notes where the block ends, and in which lanes its terms occur. A coefficient that is not a
+    /// highlight's is a sum of positive numbers; a highlight's is known by its samples.
+    fn end_block(&mut self) {
+        self.stamp += 1;
+        let first = self.masks.len();
+        let nonzero = |plane: &Plane| {
+            let lanes = plane.0.iter().enumerate();
+            lanes.fold(0u16, |mask, (i, &c)| mask | u16::from(c != 0.0) << i)
+        };
+        self.masks.extend(self.planes[first..].iter().map(nonzero));
+        let from = self.highlight_starts[self.highlight_starts.len() - 1] as usize;
+        for sample in &self.highlights[from..] {
+            self.masks[sample.slot as usize] |= 1 << sample.lane;
+        }
+        self.places.resize(self.ids.len(), 0);
         self.starts.push(self.ids.len() as u32);
         self.highlight_starts.push(self.highlights.len() as u32);
     }
@@ -111,8 +132,7 @@ impl Folder {
         self.stack.push(ROOT);
         while let Some(path) = self.stack.pop() {
             let node = reader.node();
-            let glow = self.find(path, Factor::new(Kind::Ambient, node.material, node.slot));
-            self.add(glow, lane, 1.0);
+            self.add(path, Factor::new(Kind::Ambient, node.material, node.slot), lane, 1.0);
             for _ in 0..node.lights {
                 let (hit, crossed) = reader.light();
                 self.light(path, node, hit, crossed, lane);
@@ -139,18 +159,16 @@ impl Folder {
         for &material in crossed {
             arriving = self.find(arriving, Factor::new(Kind::Shadow, material, 0));
         }
-        let diffuse = self.find(arriving, Factor::new(Kind::Diffuse, node.material, node.slot));
-        self.add(diffuse, lane, hit.n_dot_l);
+        let diffuse = Factor::new(Kind::Diffuse, node.material, node.slot);
+        self.add(arriving, diffuse, lane, hit.n_dot_l);
         if hit.one_minus_r_dot_v < 1.0 {
-            let factor = Factor::new(Kind::Specular, node.material, node.slot);
-            let specular = self.find(arriving, factor);
-            let slot = self.slot(specular);
-            self.masks[slot as usize] |= 1 << (lane & (LANES - 1));
+            let specular = Factor::new(Kind::Specular, node.material, node.slot);
+            let slot = self.term(arriving, specular);
             self.highlights.push(HighlightSample {
                 slot,
                 material: node.material,
                 lane: lane as u16,
-                log2_cosine: log2_of_cosine(hit.one_minus_r_dot_v),
+                one_minus_cosine: hit.one_minus_r_dot_v,
             });
         }
     }
@@ -170,66 +188,78 @@ impl Folder {
 
     #[inline(always)]
     fn background(&mut self, path: u32, lane: usize) {
-        let term = self.find(path, Factor::new(Kind::Background, 0, 0));
-        self.add(term, lane, 1.0);
+        self.add(path, Factor::new(Kind::Background, 0, 0), lane, 1.0);
     }
 
     /// The id of `parent · factor`, first guessed from the tree before.
     #[inline(always)]
     fn find(&mut self, parent: u32, factor: Factor) -> u32 {
-        let at = self.position;
-        self.position += 1;
-        match self.memo.get(at) {
-            Some(known) if known.parent == parent && known.factor == factor => known.id,
-            _ => self.look_up(parent, factor, at),
+        match self.memo.get(self.position) {
+            Some(known) if known.parent == parent && known.factor == factor => {
+                self.position += 1;
+                known.id
+            }
+            _ => self.look_up(parent, factor),
         }
     }
 
-    fn look_up(&mut self, parent: u32, factor: Factor, at: usize) -> u32 {
-        let id = self.trie.intern(parent, factor);
-        let lookup = Lookup { parent, factor, id };
-        match self.memo.get_mut(at) {
-            Some(known) => *known = lookup,
-            None => self.memo.push(lookup),
-        }
-        id
-    }
-
-    /// The slot of a term in the present block.
+    /// The slot of the term `parent · factor` in the present block.
     #[inline(always)]
-    fn slot(&mut self, id: u32) -> u32 {
-        match self.slots.get(id as usize) {
-            Some(&(stamp, slot)) if stamp == self.stamp => slot,
-            _ => self.new_slot(id),
+    fn term(&mut self, parent: u32, factor: Factor) -> u32 {
+        let stamp = self.stamp;
+        match self.memo.get(self.position) {
+            Some(k) if k.parent == parent && k.factor == factor && k.stamp == stamp => {
+                self.position += 1;
+                k.slot
+            }
+            _ => self.find_slot(parent, factor),
         }
     }
 
-    fn new_slot(&mut self, id: u32) -> u32 {
-        if self.slots.len() <= id as usize {
-            self.slots.resize(self.trie.nodes().len(), (0, 0));
-        }
-        let slot = self.ids.len() as u32;
-        self.slots[id as usize] = (self.stamp, slot);
-        self.ids.push(id);
-        self.planes.push(Plane::default());
-        self.masks.push(0);
-        self.places.push(0);
-        self.trie.mark(id, Marks::TERM);
+    fn find_slot(&mut self, parent: u32, factor: Factor) -> u32 {
+        let at = self.position;
+        let id = self.find(parent, factor);
+        let slot = self.slot(id);
+        (self.memo[at].slot, self.memo[at].stamp) = (slot, self.stamp);
         slot
     }
 
+    fn look_up(&mut self, parent: u32, factor: Factor) -> u32 {
+        let id = self.trie.intern(parent, factor);
+        let lookup = Lookup { parent, factor, id, slot: 0, stamp: 0 };
+        match self.memo.get_mut(self.position) {
+            Some(known) => *known = lookup,
+            None => self.memo.push(lookup),
+        }
+        self.position += 1;
+        id
+    }
+
+    /// The slot of an id in the present block, made if it is new there.
+    fn slot(&mut self, id: u32) -> u32 {
+        if self.slots.len() <= id as usize {
+            self.slots.resize(self.trie.nodes().len(), (0, 0));
+        }
+        let (stamp, slot) = &mut self.slots[id as usize];
+        if *stamp != self.stamp {
+            (*stamp, *slot) = (self.stamp, self.ids.len() as u32);
+            self.ids.push(id);
+            self.planes.push(Plane::default());
+            self.trie.mark(id, Marks::TERM);
+        }
+        *slot
+    }
+
     #[inline(always)]
-    fn add(&mut self, id: u32, lane: usize, value: f32) {
-        let slot = self.slot(id);
+    fn add(&mut self, parent: u32, factor: Factor, lane: usize, value: f32) {
+        let slot = self.term(parent, factor);
         self.planes[slot as usize].0[lane & (LANES - 1)] += value;
-        self.masks[slot as usize] |= 1 << (lane & (LANES - 1));
     }
 
     /// Adds a coefficient of three numbers, as where a path meets a texel: a term per channel.
     pub fn add_colored(&mut self, term: u32, lane: usize, values: Rgb) {
         for (channel, value) in (0u16..).zip(values.0) {
-            let id = self.find(term, Factor::new(Kind::Channel, channel, 0));
-            self.add(id, lane, value);
+            self.add(term, Factor::new(Kind::Channel, channel, 0), lane, value);
         }
     }
 
@@ -257,7 +287,7 @@ impl Folder {
         reuse.entries.reserve_exact(many.len());
         reuse.planes.reserve_exact(many.len());
         reuse.singles.reserve_exact(few.iter().sum::<u32>() as usize);
-        let mut order = Vec::new();
+        let mut order: Vec<(u32, u32)> = Vec::new();
         for block in 0..self.starts.len() - 1 {
             let slots = self.starts[block]..self.starts[block + 1];
             order.clear();
@@ -274,6 +304,7 @@ impl Folder {
         }
         highlights.lists.shrink_to_fit();
         highlights.counts.shrink_to_fit();
+        self.power.take_logarithms(&mut highlights.log2_cosines);
         self.power.fold(&mut reuse, &highlights, shininess, weight);
         reuse.highlights = Some(highlights);
         Folded { trie: &self.trie, tile: reuse }
@@ -309,13 +340,30 @@ impl Folder {
         local
     }
 
-    /// Sorts a block's highlight samples into lists, by slot, then lane, then sample.
+    /// Sorts a block's highlight samples into lists, by slot, then lane, then sample. Stores
+    /// 1 − cos β, yet to be turned into logarithms.
     fn sort_highlights(&mut self, block: usize, highlights: &mut Highlights) {
         let range = self.highlight_starts[block]..self.highlight_starts[block + 1];
-        let samples = &mut self.highlights[range.start as usize..range.end as usize];
-        // Samples were found lane after lane: a stable sort by slot keeps lanes and samples.
-        samples.sort_by_key(|s| s.slot);
-        for list in samples.chunk_by(|a, b| a.slot == b.slot) {
+        let samples = &self.highlights[range.start as usize..range.end as usize];
+        let first = self.starts[block];
+        // A counting sort by slot. Samples were found lane after lane, and it keeps their order.
+        self.order.clear();
+        self.order.resize((self.starts[block + 1] - first) as usize, 0);
+        for s in samples {
+            self.order[(s.slot - first) as usize] += 1;
+        }
+        let mut next = 0;
+        for count in &mut self.order {
+            (*count, next) = (next, next + *count);
+        }
+        self.sorted.clear();
+        self.sorted.resize(samples.len(), HighlightSample::default());
+        for s in samples {
+            let at = &mut self.order[(s.slot - first) as usize];
+            self.sorted[*at as usize] = *s;
+            *at += 1;
+        }
+        for list in self.sorted.chunk_by(|a, b| a.slot == b.slot) {
             let mut mask = 0u16;
             for lane in list.chunk_by(|a, b| a.lane == b.lane) {
                 mask |= 1 << lane[0].lane;
@@ -323,7 +371,7 @@ impl Folder {
             }
             let at = self.places[list[0].slot as usize];
             highlights.lists.push(HighlightList { at, material: list[0].material, mask });
-            highlights.log2_cosines.extend(list.iter().map(|s| s.log2_cosine));
+            highlights.log2_cosines.extend(list.iter().map(|s| s.one_minus_cosine));
         }
     }
 }

@@ -119,8 +119,7 @@ fn a_colored_coefficient_is_a_term_per_channel() {
         folder.add_colored(term, lane, Rgb([0.5, 0.25, 0.125]));
         folder.add_colored(term, lane, Rgb([0.5, 0.5, 0.5]));
     }
-    folder.starts.push(folder.ids.len() as u32);
-    folder.highlight_starts.push(0);
+    folder.end_block();
     let Folded { trie, tile } = folder.finish_tile(TransportTile::default(), 0.5, &[]);
     for (channel, sum) in [(0, 0.5), (1, 0.375), (2, 0.3125)] {
         let product = [f(Kind::Background, 0), f(Kind::Channel, channel)];
