@@ -252,14 +252,21 @@ impl<'a> Job<'a> {
     fn work(&self) -> Result<Outcome, TraceError> {
         let mut worker = self.grower.worker();
         let mut folder = Folder::default();
-        let mut trees = TileTrees::default();
+        let mut scratch = TileTrees::default();
         let mut outcome = Outcome { rays: RayCounts::default(), nodes: 0, folding: Duration::ZERO };
         while let Some(tile) = claim(&self.next, self.layout.tiles()) {
-            let whole = self.tile(tile, &mut worker, &mut folder, &mut trees, &mut outcome)?;
+            // Memory of the earlier trace is written at once, new memory is taken when its size is
+            // known.
+            let mut old = self.slot(tile).old.take();
+            let reused = old.as_ref().map_or(0, TileTrees::bytes);
+            let trees = old.as_mut().unwrap_or(&mut scratch);
+            let whole = self.tile(tile, &mut worker, &mut folder, trees, &mut outcome)?;
             let folding = Instant::now();
             let transport = self.finish_tile(&mut folder);
             outcome.folding += folding.elapsed();
-            self.store(tile, whole.then_some(&trees), transport)?;
+            // A clone takes no more memory than it needs.
+            let kept = whole.then(|| old.map_or_else(|| scratch.clone(), TileTrees::trimmed));
+            self.store(tile, kept, reused, transport)?;
             self.progress.step();
         }
         outcome.rays = worker.rays;
@@ -316,19 +323,14 @@ impl<'a> Job<'a> {
 
     /// Keeps a tile. Where the budget asks for it, memory of the earlier trace goes first, then this
     /// tile's trees and those of others, then highlight lists: the matrix alone is always kept.
+    /// `reused` are the bytes of the earlier trace that the tile's trees took over or gave back.
     fn store(
         &self,
         tile: usize,
-        trees: Option<&TileTrees>,
+        trees: Option<TileTrees>,
+        reused: usize,
         transport: TransportTile,
     ) -> Result<(), TraceError> {
-        let old = self.slot(tile).old.take();
-        let reused = old.as_ref().map_or(0, TileTrees::bytes);
-        let trees = trees.map(|trees| {
-            let mut room = old.unwrap_or_default();
-            room.assign(trees);
-            room
-        });
         // Whoever holds the ledger may lock a slot, never the other way round.
         let mut ledger = self.ledger.lock().expect("no worker panicked");
         let mut slot = self.slot(tile);
