@@ -116,6 +116,7 @@ fn traced(
             "forest": forest.bytes() as f64 / pixels,
             "transport": transport.bytes() as f64 / pixels,
             "highlights": transport.highlight_bytes() as f64 / pixels,
+            "terms": session.term_bytes() as f64 / pixels,
         },
         "released_tiles": forest.released(),
         "tiles": forest.tiles.len(),
@@ -180,22 +181,26 @@ impl Shading {
 /// Random edits of one parameter each, from the edit to the finished 8-bit picture.
 struct Edits {
     times: Spread,
+    refolds: usize,
     changed_share: f64,
     too_small: usize,
     needing_rays: usize,
 }
 
 impl Edits {
-    /// Takes 100 edits that change at least 1 % of the pixels and cast no ray.
+    /// Takes 100 edits that change at least 1 % of the pixels and cast no ray, of every parameter
+    /// that can: coefficients, exponents, switches, exposure. Asking for the class beforehand, as a
+    /// badge does, is not part of the time.
     fn measure(session: &mut Session) -> Result<Edits, TraceError> {
         let mut random = Random(0x5eed);
+        let kinds = [Kind::Coefficient, Kind::Number, Kind::Flag];
         let names: Vec<String> = parameters(session.scene())
             .into_iter()
-            .filter(|p| p.kind == Kind::Coefficient)
+            .filter(|p| kinds.contains(&p.kind))
             .map(|p| p.path)
             .collect();
         let (mut times, mut share) = (Vec::new(), 0.0);
-        let (mut too_small, mut needing_rays) = (0, 0);
+        let (mut refolds, mut too_small, mut needing_rays) = (0, 0, 0);
         for _ in 0..3000 {
             if times.len() == 100 || names.is_empty() {
                 break;
@@ -214,14 +219,16 @@ impl Edits {
                 continue;
             }
             share += changed;
+            refolds += usize::from(report.class == Class::Refold);
             times.push(report.milliseconds);
         }
         let changed_share = share / times.len().max(1) as f64;
-        Ok(Edits { times: Spread::of(times), changed_share, too_small, needing_rays })
+        Ok(Edits { times: Spread::of(times), refolds, changed_share, too_small, needing_rays })
     }
 
     fn json(&self) -> Value {
         let mut value = self.times.json();
+        value["refolds"] = json!(self.refolds);
         value["changed_share"] = json!(self.changed_share);
         value["too_small"] = json!(self.too_small);
         value["needing_rays"] = json!(self.needing_rays);
@@ -229,10 +236,16 @@ impl Edits {
     }
 }
 
-/// The scene with one coefficient between 0.05 and 0.95.
+/// The scene with one parameter at a random value of a sensible range.
 fn random_edit(scene: &Scene, name: &str, random: &mut Random) -> Option<Scene> {
     let mut edited = scene.clone();
-    let value = format!("{:.3}", 0.05 + 0.9 * random.unit());
+    let unit = random.unit();
+    let value = match name.rsplit('.').next() {
+        Some("on") => (unit < 0.5).to_string(),
+        Some("shininess") => format!("{:.2}", 1.0 + 199.0 * unit),
+        Some("exposure") => format!("{:.3}", 4.0 * unit - 2.0),
+        _ => format!("{:.3}", 0.05 + 0.9 * unit),
+    };
     set(&mut edited, name, &value).ok().map(|()| edited)
 }
 

@@ -5,10 +5,13 @@ use std::path::{Path, PathBuf};
 use super::render::edit_line;
 use super::watch::watched;
 use super::{Failure, print, read_scene, say};
-use crate::film::write::{Format, picture};
+use crate::film::write::{Format, check_writable, picture};
 use crate::scene::path::set;
 use crate::scene::{Scene, read, write};
 use crate::session::{Options, Session};
+
+/// Where the first picture goes: into the present folder.
+const PICTURE: &str = "rayforest.png";
 
 /// The scene that is always there.
 const BUILT_IN: &str = include_str!("../../scenes/whitted.toml");
@@ -18,6 +21,7 @@ pub(crate) fn run(file: Option<&Path>) -> Result<(), Failure> {
         Some(file) => read_scene(file)?,
         None => read::text(BUILT_IN, Path::new("whitted.toml")).map_err(Failure::input)?,
     };
+    check_writable(Path::new(PICTURE)).map_err(Failure::job)?;
     let opened = watched("tracing", |p| Session::open(scene, Options::default(), p));
     let mut session = opened.map_err(Failure::job)?;
     let report = session.trace_report();
@@ -28,7 +32,7 @@ pub(crate) fn run(file: Option<&Path>) -> Result<(), Failure> {
         report.rays.total() as f64 / 1e6,
         report.seconds * 1e3
     ));
-    save(&session, "rayforest.png".into())?;
+    save(&session, PICTURE.into())?;
     let traced = report.seconds;
     for (number, (assignment, edited)) in edits(session.scene()).into_iter().enumerate() {
         let edit = watched("tracing", |progress| session.edit(edited, progress));

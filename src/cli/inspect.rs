@@ -40,7 +40,7 @@ impl Inspect {
         let progress = Progress::default();
         let cancelled = |_| Failure::job("cancelled");
         let geometry = Geometry::build(&scene, &progress).map_err(cancelled)?;
-        let inspection = pixel(&scene, &geometry, self.pixel, &progress).map_err(cancelled)?;
+        let inspection = pixel(&scene, &geometry, self.pixel, &progress).map_err(Failure::job)?;
         let shown = if self.all_samples { inspection.samples.len() } else { 1 };
         for (number, tree) in inspection.samples.iter().enumerate().take(shown) {
             print(&format!("sample {} of {}", number + 1, inspection.samples.len()));

@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Parser, Subcommand};
 
 use crate::color::Rgb;
+use crate::film::write::check_writable;
 use crate::scene::energy::{Overbright, overbright};
 use crate::scene::{Scene, path, read};
 use crate::session::Options;
@@ -139,10 +140,18 @@ impl Check {
 
 impl Bench {
     fn run(self) -> Result<(), Failure> {
-        let mut rows = Vec::new();
+        if let Some(file) = self.json.as_deref().filter(|f| *f != Path::new("-")) {
+            check_writable(file).map_err(Failure::job)?;
+        }
+        // All mistakes are found before the first measurement.
+        let mut scenes = Vec::new();
         for file in &self.scenes {
             let mut scene = read_scene(file)?;
             let options = self.common.apply(&mut scene)?;
+            scenes.push((file, scene, options));
+        }
+        let mut rows = Vec::new();
+        for (file, scene, options) in scenes {
             let name = file.file_stem().map_or_else(String::new, |n| n.to_string_lossy().into());
             say(&format!("measuring {name} …"));
             let row = crate::bench::measure(&name, scene, options).map_err(Failure::job)?;

@@ -257,36 +257,29 @@ impl Folder {
     }
 
     /// Adds a coefficient of three numbers, as where a path meets a texel: a term per channel.
+    /// No surface of today has a colour per point; textures will.
     pub fn add_colored(&mut self, term: u32, lane: usize, values: Rgb) {
         for (channel, value) in (0u16..).zip(values.0) {
             self.add(term, Factor::new(Kind::Channel, channel, 0), lane, value);
         }
     }
 
-    /// Ends a tile: puts its terms in canonical order, computes its highlights, and fills `reuse`.
+    /// Ends a tile: puts its terms in canonical order and computes its highlights.
     ///
     /// `weight` is that of one sample; `shininess` has one exponent per material.
-    pub fn finish_tile(
-        &mut self,
-        mut reuse: TransportTile,
-        weight: f32,
-        shininess: &[Option<f32>],
-    ) -> Folded<'_> {
+    pub fn finish_tile(&mut self, weight: f32, shininess: &[Option<f32>]) -> Folded<'_> {
         let ranks = self.trie.canonical_ranks();
-        let local = self.dictionary(&ranks, &mut reuse);
-        let mut highlights = reuse.highlights.take().unwrap_or_default();
-        highlights.clear();
+        let mut tile = TransportTile::default();
+        let local = self.dictionary(&ranks, &mut tile);
+        let mut highlights = Highlights::default();
         highlights.log2_cosines.reserve_exact(self.highlights.len());
-        reuse.starts.clear();
-        reuse.starts.push(BlockStart::default());
-        reuse.entries.clear();
-        reuse.planes.clear();
-        reuse.singles.clear();
+        tile.starts.reserve_exact(self.starts.len());
+        tile.starts.push(BlockStart::default());
         let lanes = self.masks.iter().map(|m| m.count_ones());
         let (few, many): (Vec<u32>, Vec<u32>) = lanes.partition(|&lanes| lanes <= SPARSE_LANES);
-        reuse.entries.reserve_exact(many.len());
-        reuse.planes.reserve_exact(many.len());
-        reuse.singles.reserve_exact(few.iter().sum::<u32>() as usize);
+        tile.entries.reserve_exact(many.len());
+        tile.planes.reserve_exact(many.len());
+        tile.singles.reserve_exact(few.iter().sum::<u32>() as usize);
         let mut order: Vec<(u32, u32)> = Vec::new();
         for block in 0..self.starts.len() - 1 {
             let slots = self.starts[block]..self.starts[block + 1];
@@ -294,20 +287,20 @@ impl Folder {
             order.extend(slots.map(|slot| (local[self.ids[slot as usize] as usize], slot)));
             order.sort_unstable();
             for &(entry, slot) in &order {
-                self.places[slot as usize] = self.store(entry, slot as usize, weight, &mut reuse);
+                self.places[slot as usize] = self.store(entry, slot as usize, weight, &mut tile);
             }
-            reuse.starts.push(BlockStart {
-                plane: reuse.planes.len() as u32,
-                single: reuse.singles.len() as u32,
+            tile.starts.push(BlockStart {
+                plane: tile.planes.len() as u32,
+                single: tile.singles.len() as u32,
             });
             self.sort_highlights(block, &mut highlights);
         }
         highlights.lists.shrink_to_fit();
         highlights.counts.shrink_to_fit();
         self.power.take_logarithms(&mut highlights.log2_cosines);
-        self.power.fold(&mut reuse, &highlights, shininess, weight);
-        reuse.highlights = Some(highlights);
-        Folded { trie: &self.trie, tile: reuse }
+        self.power.fold(&mut tile, &highlights, shininess, weight);
+        tile.highlights = Some(highlights);
+        Folded { trie: &self.trie, tile }
     }
 
     /// Stores a slot's coefficients as a plane or one by one; where they are.
@@ -329,7 +322,6 @@ impl Folder {
     /// every id its index there.
     fn dictionary(&self, ranks: &[u32], tile: &mut TransportTile) -> Vec<u32> {
         let marked = self.trie.nodes().iter().zip(0u32..).filter(|(n, _)| n.marks.has(Marks::TERM));
-        tile.terms.clear();
         tile.terms.extend(marked.map(|(_, id)| id));
         tile.terms.sort_unstable_by_key(|&id| ranks[id as usize]);
         tile.terms.shrink_to_fit();

@@ -41,7 +41,7 @@ fn folded(trees: &TileTrees) -> (Trie, TransportTile) {
     folder.begin_tile();
     folder.block(&mut trees.read(0), ALL, 2);
     let shininess = [Some(8.0), Some(2.0), Some(1.0)];
-    let Folded { trie, tile } = folder.finish_tile(TransportTile::default(), 0.5, &shininess);
+    let Folded { trie, tile } = folder.finish_tile(0.5, &shininess);
     (trie.clone(), tile)
 }
 
@@ -120,7 +120,7 @@ fn a_colored_coefficient_is_a_term_per_channel() {
         folder.add_colored(term, lane, Rgb([0.5, 0.5, 0.5]));
     }
     folder.end_block();
-    let Folded { trie, tile } = folder.finish_tile(TransportTile::default(), 0.5, &[]);
+    let Folded { trie, tile } = folder.finish_tile(0.5, &[]);
     for (channel, sum) in [(0, 0.5), (1, 0.375), (2, 0.3125)] {
         let product = [f(Kind::Background, 0), f(Kind::Channel, channel)];
         assert_eq!(coefficients(trie, &tile, &product), [sum; LANES]);
@@ -135,7 +135,7 @@ fn a_new_exponent_gives_what_a_fresh_fold_gives() {
     folder.begin_tile();
     folder.block(&mut trees.read(0), ALL, 2);
     let exponents = [Some(8.0), Some(31.0), Some(1.0)];
-    let fresh = folder.finish_tile(TransportTile::default(), 0.5, &exponents).tile;
+    let fresh = folder.finish_tile(0.5, &exponents).tile;
     assert_ne!(kept, fresh);
     let any = HighlightPower::default().refold(&mut kept, &[None, Some(31.0), None], 0.5);
     assert!(any);

@@ -207,12 +207,4 @@ impl Highlights {
             + counts.capacity() * 2
             + log2_cosines.capacity() * 4
     }
-
-    /// Empties it and keeps its memory.
-    pub fn clear(&mut self) {
-        let Highlights { lists, counts, log2_cosines } = self;
-        lists.clear();
-        counts.clear();
-        log2_cosines.clear();
-    }
 }

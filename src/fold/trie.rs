@@ -53,7 +53,8 @@ pub struct TrieNode {
 #[derive(Clone, Debug)]
 pub struct Trie {
     nodes: Vec<TrieNode>,
-    /// Open addressing over ids; [`EMPTY`] marks a free place. A power of two long, at most half full.
+    /// Open addressing over ids; [`EMPTY`] marks a free place. A power of two long, at most half
+    /// full; without any place in a renumbered trie, which nobody adds to.
     table: Vec<u32>,
 }
 
@@ -102,6 +103,7 @@ impl Trie {
     /// The id of `parent · factor`, made if it is new.
     #[inline(always)]
     pub fn intern(&mut self, parent: u32, factor: Factor) -> u32 {
+        assert!(!self.table.is_empty(), "a renumbered trie is only read");
         let mask = self.table.len() - 1;
         let mut at = hash(parent, factor) as usize & mask;
         loop {
@@ -170,15 +172,13 @@ impl Trie {
         ranks
     }
 
-    /// Renumbers by `ranks` (from [`Trie::canonical_ranks`]).
+    /// Renumbers by `ranks` (from [`Trie::canonical_ranks`]). The result cannot be added to.
     pub fn renumbered(&self, ranks: &[u32]) -> Trie {
         let mut nodes = self.nodes.clone();
         for (node, &rank) in self.nodes.iter().zip(ranks) {
             nodes[rank as usize] = TrieNode { parent: ranks[node.parent as usize], ..*node };
         }
-        let mut trie = Trie { nodes, table: Vec::new() };
-        trie.rehash(self.table.len());
-        trie
+        Trie { nodes, table: Vec::new() }
     }
 
     /// The factors of a term from the eye on.

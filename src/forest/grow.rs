@@ -17,6 +17,8 @@ use crate::scene::{LightPlace, Scene};
 /// What receives the trees: storage, or nothing, so that tracing with and without keeping is the
 /// same code. Nodes arrive in preorder, a node's lights right after it.
 pub trait Sink {
+    /// Bytes that it holds.
+    fn bytes(&self) -> usize;
     /// A block of 16 pixels begins.
     fn block(&mut self);
     /// A sample begins; whether its ray met the scene.
@@ -33,6 +35,10 @@ pub trait Sink {
 pub struct Discard;
 
 impl Sink for Discard {
+    #[inline(always)]
+    fn bytes(&self) -> usize {
+        0
+    }
     fn block(&mut self) {}
     #[inline(always)]
     fn sample(&mut self, _: bool) {}
@@ -45,6 +51,26 @@ impl Sink for Discard {
     #[inline(always)]
     fn light(&mut self, _: LightHit, _: &[u16]) {}
 }
+
+/// Why growing stopped before its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// It was cancelled.
+    Cancelled,
+    /// A shadow ray crosses more than [`MOST_CROSSED`] transparent surfaces.
+    Surfaces,
+    /// The sink holds more than it may.
+    Branches,
+}
+
+impl From<Cancelled> for Stop {
+    fn from(_: Cancelled) -> Stop {
+        Stop::Cancelled
+    }
+}
+
+/// Transparent surfaces that a shadow ray may cross.
+pub const MOST_CROSSED: usize = BLOCKED as usize - 1;
 
 /// Which branch of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,6 +134,13 @@ pub struct Worker {
     pub rays: RayCounts,
 }
 
+/// When to stop.
+#[derive(Clone, Copy)]
+struct Limits<'a> {
+    most: usize,
+    progress: &'a Progress,
+}
+
 /// A ray still to be followed.
 struct Pending {
     ray: Ray,
@@ -145,18 +178,22 @@ impl<'a> Grower<'a> {
         }
     }
 
-    /// Grows the trees of the 16 pixels of one block.
+    /// Grows the trees of the 16 pixels of one block, unless `sink` comes to hold more than `most`
+    /// bytes. A cancel is obeyed at the next node.
     pub fn block<K: Sink>(
         &self,
         worker: &mut Worker,
         (tile, block): (usize, usize),
         sink: &mut K,
+        most: usize,
         progress: &Progress,
-    ) -> Result<(), Cancelled> {
+    ) -> Result<(), Stop> {
+        worker.pending.clear();
+        let limits = Limits { most, progress };
         sink.block();
         for lane in 0..LANES {
             if let Some(pixel) = self.layout.pixel(Place { tile, block, lane }) {
-                dispatch!(self.level, simd => self.pixel(simd, worker, pixel, sink, progress))?;
+                dispatch!(self.level, simd => self.pixel(simd, worker, pixel, sink, limits))?;
             }
         }
         Ok(())
@@ -169,20 +206,26 @@ impl<'a> Grower<'a> {
         worker: &mut Worker,
         pixel: [u32; 2],
         sink: &mut K,
-        progress: &Progress,
-    ) -> Result<(), Cancelled> {
+        limits: Limits,
+    ) -> Result<(), Stop> {
         for index in 0..self.samples {
-            progress.check()?;
             let [u, v] = sampling::in_pixel(pixel, index, self.samples);
             let ray = self.view.ray(f64::from(pixel[0]) + u, f64::from(pixel[1]) + v);
-            self.sample(simd, worker, ray, sink);
+            self.sample(simd, worker, ray, sink, limits)?;
         }
         Ok(())
     }
 
     /// Follows one camera ray to all its ends.
     #[inline(always)]
-    fn sample<S: Simd, K: Sink>(&self, simd: S, worker: &mut Worker, ray: Ray, sink: &mut K) {
+    fn sample<S: Simd, K: Sink>(
+        &self,
+        simd: S,
+        worker: &mut Worker,
+        ray: Ray,
+        sink: &mut K,
+        limits: Limits,
+    ) -> Result<(), Stop> {
         worker.media.clear();
         worker.rays.camera += 1;
         let root = Pending {
@@ -194,18 +237,23 @@ impl<'a> Grower<'a> {
         };
         worker.pending.push(root);
         while let Some(next) = worker.pending.pop() {
+            limits.progress.check()?;
+            if sink.bytes() > limits.most {
+                return Err(Stop::Branches);
+            }
             let hit = self.geometry.closest_hit(simd, &mut worker.stack, &next.ray, next.leaving);
             match (hit, next.parent) {
                 (Some(hit), parent) => {
                     if parent.is_none() {
                         sink.sample(true);
                     }
-                    self.node(simd, worker, &next, hit, sink);
+                    self.node(simd, worker, &next, hit, sink)?;
                 }
                 (None, Some((node, side))) => sink.missed(node, side),
                 (None, None) => sink.sample(false),
             }
         }
+        Ok(())
     }
 
     /// Stores a node, asks its lights, and queues its branches.
@@ -217,7 +265,7 @@ impl<'a> Grower<'a> {
         from: &Pending,
         hit: Hit,
         sink: &mut K,
-    ) {
+    ) -> Result<(), Stop> {
         let at = self.geometry.interaction(&from.ray, hit);
         let surface = Surface::new(&at, from.ray.direction);
         let media = self.cross(&mut worker.media, from.medium, &at, &surface);
@@ -238,7 +286,7 @@ impl<'a> Grower<'a> {
         let node = Node { t: hit.t, primitive: hit.primitive, material, lights: 0, slot, ends };
         let name = sink.node(node);
         for (light, place) in self.lights.iter().enumerate() {
-            self.light(simd, worker, &at, &surface, (light as u16, place), sink);
+            self.light(simd, worker, &at, &surface, (light as u16, place), sink)?;
         }
         let mut queue = |direction, path, side, medium| {
             let (ray, leaving) = self.geometry.spawn(&at, direction);
@@ -253,6 +301,7 @@ impl<'a> Grower<'a> {
             worker.rays.reflected += 1;
             queue(surface.reflect(), path, Side::Reflected, from.medium);
         }
+        Ok(())
     }
 
     /// Sends a shadow ray to a light in front of the geometric surface.
@@ -265,13 +314,13 @@ impl<'a> Grower<'a> {
         surface: &Surface,
         (light, place): (u16, &LightPlace),
         sink: &mut K,
-    ) {
+    ) -> Result<(), Stop> {
         let to_light = match place {
             LightPlace::Point(p) => (*p - at.point).normalize_or_zero(),
             LightPlace::Direction(d) => -d.normalize(),
         };
         if surface.geometric.dot(to_light) <= 0.0 {
-            return;
+            return Ok(());
         }
         worker.rays.shadow += 1;
         let (ray, leaving) = self.geometry.spawn(at, to_light);
@@ -286,9 +335,11 @@ impl<'a> Grower<'a> {
         if let Some(material) = witness {
             let hit = LightHit { light, crossed: BLOCKED, n_dot_l: 0.0, one_minus_r_dot_v: 1.0 };
             sink.light(hit, &[material]);
-            return;
+            return Ok(());
         }
-        assert!(crossed.len() < BLOCKED as usize, "a shadow ray crosses fewer surfaces");
+        if crossed.len() > MOST_CROSSED {
+            return Err(Stop::Surfaces);
+        }
         crossed.sort_unstable();
         let n_dot_l = surface.normal.dot(to_light);
         let mirrored = surface.normal * (2.0 * n_dot_l) - to_light;
@@ -300,6 +351,7 @@ impl<'a> Grower<'a> {
             one_minus_r_dot_v: one_minus_r_dot_v as f32,
         };
         sink.light(hit, crossed);
+        Ok(())
     }
 
     /// Which media meet at a surface, and the list of solids behind it.

@@ -141,6 +141,16 @@ impl TileTrees {
             + crossings.capacity() * 2
     }
 
+    /// Bytes of what is stored, without room for more.
+    pub fn used_bytes(&self) -> usize {
+        let TileTrees { blocks, hits, nodes, lights, crossings } = self;
+        size_of_val(&**blocks)
+            + hits.len()
+            + size_of_val(&**nodes)
+            + size_of_val(&**lights)
+            + size_of_val(&**crossings)
+    }
+
     /// The same trees, moved to smaller memory if they leave more than an eighth of theirs free.
     pub fn trimmed(mut self) -> TileTrees {
         let TileTrees { blocks, hits, nodes, lights, crossings } = &mut self;
@@ -246,6 +256,11 @@ impl Sink for TileTrees {
             light: self.lights.len() as u32,
             crossing: self.crossings.len() as u32,
         });
+    }
+
+    #[inline(always)]
+    fn bytes(&self) -> usize {
+        self.used_bytes()
     }
 
     #[inline(always)]

@@ -151,7 +151,7 @@ impl Primitives {
             Shape::Polygon { points } => self.polygon(&placed, points),
             Shape::Mesh { file: _, mesh } => self.mesh(&placed, mesh, progress)?,
             Shape::Knot { turns, tube, segments } => {
-                let mesh = Arc::new(generate::knot(*turns, *tube, *segments));
+                let mesh = Arc::new(generate::knot(*turns, *tube, *segments, progress)?);
                 self.mesh(&placed, &mesh, progress)?
             }
             Shape::Sphereflake { center, radius, levels } => {

@@ -4,6 +4,7 @@ use std::f64::consts::{FRAC_PI_6, PI, TAU};
 
 use glam::DVec3;
 
+use crate::progress::{Cancelled, Progress};
 use crate::scene::mesh::Mesh;
 
 /// Distance of the knot's curve from the circle of radius 1 that it winds around.
@@ -14,10 +15,16 @@ const KNOT_WINDING_RADIUS: f64 = 0.5;
 ///
 /// The cross-section's frame is the torus' own normal and its cross product with the tangent; both
 /// depend on the place alone, so the tube closes without a twist.
-pub(super) fn knot(turns: [u32; 2], tube: f64, segments: [u32; 2]) -> Mesh {
+pub(super) fn knot(
+    turns: [u32; 2],
+    tube: f64,
+    segments: [u32; 2],
+    progress: &Progress,
+) -> Result<Mesh, Cancelled> {
     let [along, around] = segments;
     let mut mesh = Mesh::default();
     for i in 0..along {
+        progress.check()?;
         let (center, normal, binormal) = knot_frame(turns, TAU * f64::from(i) / f64::from(along));
         for j in 0..around {
             let theta = TAU * f64::from(j) / f64::from(around);
@@ -27,6 +34,7 @@ pub(super) fn knot(turns: [u32; 2], tube: f64, segments: [u32; 2]) -> Mesh {
         }
     }
     for i in 0..along {
+        progress.check()?;
         for j in 0..around {
             let at = |i: u32, j: u32| (i % along) * around + j % around;
             let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
@@ -34,7 +42,7 @@ pub(super) fn knot(turns: [u32; 2], tube: f64, segments: [u32; 2]) -> Mesh {
         }
     }
     mesh.triangle_normals = mesh.triangles.clone();
-    mesh
+    Ok(mesh)
 }
 
 /// Point, torus normal and binormal (tangent × normal) of the knot at `phi` radians.
@@ -105,7 +113,7 @@ mod tests {
 
     #[test]
     fn knot_normals_point_out_of_a_positive_volume() {
-        let mesh = knot([2, 3], 0.2, [200, 16]);
+        let mesh = knot([2, 3], 0.2, [200, 16], &Progress::default()).unwrap();
         let corner = |t: &[u32; 3], k: usize| mesh.positions[t[k] as usize];
         let mut volume = 0.0;
         for t in &mesh.triangles {

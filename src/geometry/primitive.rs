@@ -1,7 +1,8 @@
 //! What a ray can hit, and where it hits it: decided in f64 from the original numbers.
 //!
 //! Every test is scale-covariant: no constant has a length in it, so a scene scaled by a power of
-//! two gives the same bits. Sphere: `STABILITY.md` §2, Q1, Q2.
+//! two gives the same bits. Sphere: the discriminant
+//! from the chord's distance to the centre (Haines, Günther, Akenine-Möller, *Ray Tracing Gems*, ch. 7).
 
 use glam::DVec3;
 

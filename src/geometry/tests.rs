@@ -13,7 +13,7 @@ use crate::scene::mesh::Mesh;
 use crate::scene::{Shape, Solid};
 
 fn knot() -> Mesh {
-    generate::knot([2, 3], 0.25, [120, 16])
+    generate::knot([2, 3], 0.25, [120, 16], &Progress::default()).unwrap()
 }
 
 fn levels() -> [Level; 2] {

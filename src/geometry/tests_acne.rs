@@ -1,5 +1,6 @@
 //! Rays that leave a surface: never stopped by it, always by what lies just above it.
 
+use crate::progress::Progress;
 use fearless_simd::Level;
 use glam::DVec3;
 
@@ -186,7 +187,8 @@ fn planes_and_polygons_never_shadow_themselves() {
 fn rays_from_a_knot_meet_it_only_elsewhere() {
     // Not convex: a ray may meet it again, but only from the side that it is on. Not aimed at edges:
     // there rounding decides whether a ray that goes into one face and out of the other is inside.
-    let knot = || mesh_solid(generate::knot([2, 3], 0.25, [120, 16]));
+    let knot =
+        || mesh_solid(generate::knot([2, 3], 0.25, [120, 16], &Progress::default()).unwrap());
     for (scale, offset) in resolvable() {
         let geometry = build(moved(vec![knot()], scale, offset));
         let (mut random, mut stack) = (Random(3), Stack::new(&geometry));

@@ -12,6 +12,8 @@ use super::{
 pub struct Change {
     /// The first parameter found that moves rays, if any: everything is traced again.
     pub moves_rays: Option<&'static str>,
+    /// Whether what moves rays is in the compiled geometry: solids, and where their colours fall.
+    pub geometry: bool,
     /// Materials whose highlight has another exponent: their coefficients are folded again.
     pub refold: Vec<u16>,
     /// A factor may have another value, or the rule of liveness another limit.
@@ -33,8 +35,8 @@ impl Change {
         change.term(*color != new.background.color);
         change.trace(trace, &new.trace);
         change.ray(lights.len() != new.lights.len(), "the number of lights");
-        change.ray(materials.len() != new.materials.len(), "the number of materials");
-        change.ray(solids.len() != new.solids.len(), "the number of solids");
+        change.form(materials.len() != new.materials.len(), "the number of materials");
+        change.form(solids.len() != new.solids.len(), "the number of solids");
         for (a, b) in lights.iter().zip(&new.lights) {
             change.light(a, b);
         }
@@ -51,6 +53,11 @@ impl Change {
         if differs && self.moves_rays.is_none() {
             self.moves_rays = Some(what);
         }
+    }
+
+    fn form(&mut self, differs: bool, what: &'static str) {
+        self.ray(differs, what);
+        self.geometry |= differs;
     }
 
     fn term(&mut self, differs: bool) {
@@ -124,19 +131,19 @@ impl Change {
             (Paint::Solid(a), Paint::Solid(b)) => self.term(a != b),
             (Paint::Checker { a, b, size }, Paint::Checker { a: a2, b: b2, size: size2 }) => {
                 self.term(a != a2 || b != b2);
-                self.ray(size != size2, "texture.checker.size");
+                self.form(size != size2, "texture.checker.size");
             }
-            _ => self.ray(true, "the kind of texture"),
+            _ => self.form(true, "the kind of texture"),
         }
     }
 
     fn solid(&mut self, old: &Solid, new: &Solid) {
         let Solid { name: _, shape, material, placement } = old;
-        self.ray(*shape != new.shape, "a solid's shape");
-        self.ray(*material != new.material, "a solid's material");
+        self.form(*shape != new.shape, "a solid's shape");
+        self.form(*material != new.material, "a solid's material");
         let Placement { translate, rotate_degrees, scale } = placement;
-        self.ray(*translate != new.placement.translate, "translate");
-        self.ray(*rotate_degrees != new.placement.rotate_degrees, "rotate_degrees");
-        self.ray(*scale != new.placement.scale, "scale");
+        self.form(*translate != new.placement.translate, "translate");
+        self.form(*rotate_degrees != new.placement.rotate_degrees, "rotate_degrees");
+        self.form(*scale != new.placement.scale, "scale");
     }
 }

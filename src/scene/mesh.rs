@@ -28,6 +28,10 @@ pub struct Mesh {
     pub triangle_uvs: Vec<[u32; 3]>,
 }
 
+/// No number is NaN, so equality is reflexive. With it two `Arc`s of one mesh compare by address:
+/// an edit does not walk its vertices.
+impl Eq for Mesh {}
+
 /// Why a mesh file cannot be used.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshError {

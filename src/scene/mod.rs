@@ -70,7 +70,7 @@ pub const MAX_PIXELS: u64 = 1 << 28;
 /// Largest number of materials, and of lights.
 pub const MAX_NAMED: usize = 65_535;
 /// Largest number of quadrangles of a knot: segments along times segments around.
-pub const MAX_KNOT_FACES: u64 = 1 << 24;
+pub const MAX_KNOT_FACES: u64 = 1 << 22;
 
 /// `[camera]`: a right-handed view from `eye` towards `target`.
 #[derive(Clone, Debug, PartialEq)]

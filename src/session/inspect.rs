@@ -1,19 +1,20 @@
 //! One pixel in detail: its ray trees, its terms, and each term's share of its light.
 
+use super::trace::TraceError;
 use crate::color::Rgb;
 use crate::film::layout::{LANES, Layout, Place};
 use crate::fold::Folder;
 use crate::forest::grow::Grower;
 use crate::forest::tree::{BLOCKED, Branch, Reader, TileTrees};
 use crate::geometry::Geometry;
-use crate::progress::{Cancelled, Progress};
+use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::scene::factor::{Factor, FactorValues};
 use crate::shade::terms::{TermProgram, TermValues};
 
 /// All that is known of a pixel.
 pub struct Inspection {
-    /// Its light, before exposure: the sum of all shares in their order.
+    /// Its light, before exposure: the sum of all shares.
     pub light: Rgb,
     /// The trees of its samples.
     pub samples: Vec<Option<InspectedNode>>,
@@ -65,6 +66,9 @@ pub struct InspectedLight {
     pub crossed: Vec<u16>,
 }
 
+/// Memory for the trees of a pixel and its fifteen neighbours.
+const MOST_BYTES: usize = 1 << 30;
+
 /// Traces one pixel of a scene and takes it apart.
 ///
 /// # Panics
@@ -74,12 +78,14 @@ pub fn pixel(
     geometry: &Geometry,
     pixel: [u32; 2],
     progress: &Progress,
-) -> Result<Inspection, Cancelled> {
+) -> Result<Inspection, TraceError> {
     let layout = Layout::new(scene.picture.size);
     let place = layout.place(pixel);
     let grower = Grower::new(scene, geometry);
     let mut trees = TileTrees::default();
-    grower.block(&mut grower.worker(), (place.tile, place.block), &mut trees, progress)?;
+    let at = (place.tile, place.block);
+    let grown = grower.block(&mut grower.worker(), at, &mut trees, MOST_BYTES, progress);
+    grown.map_err(|stop| TraceError::of(stop, MOST_BYTES))?;
     let samples = scene.trace.samples;
     let covered: [bool; LANES] =
         std::array::from_fn(|lane| layout.pixel(Place { lane, ..place }).is_some());
@@ -105,7 +111,7 @@ fn terms(
     folder.begin_tile();
     folder.block(&mut trees.read(0), covered, scene.trace.samples);
     let weight = 1.0 / scene.trace.samples as f32;
-    let folded = folder.finish_tile(Default::default(), weight, &shininess);
+    let folded = folder.finish_tile(weight, &shininess);
     let mut values = TermValues::default();
     values.evaluate(&TermProgram::new(folded.trie), &FactorValues::new(scene));
     let block = folded.tile.block(0);

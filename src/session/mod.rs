@@ -17,7 +17,7 @@ use crate::forest::grow::{Grower, RayCounts};
 use crate::forest::tree::TileTrees;
 use crate::geometry::Geometry;
 use crate::math::exposure_factor;
-use crate::progress::{Cancelled, Progress};
+use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::scene::change::Change;
 use crate::scene::factor::FactorValues;
@@ -30,17 +30,20 @@ use trace::{TraceError, TraceReport, trace};
 pub struct Options {
     /// Threads, ≥ 1.
     pub threads: usize,
-    /// Bytes that trees, matrix and highlight lists may take together.
+    /// Bytes that trees, matrix and highlight lists may take together. Not counted: the geometry,
+    /// the list of terms, each thread's scratch (a few tiles), and, while a scene is traced again,
+    /// the matrix before it, which is held so that a cancel costs nothing.
     pub memory: u64,
 }
 
 impl Default for Options {
-    /// All cores and half of the machine's memory.
+    /// All cores and half of the machine's memory, or of the container's.
     fn default() -> Options {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let machine = sysinfo::System::new().map_or(0, |mut system| {
             system.refresh_memory();
-            system.total_memory()
+            let container = system.cgroup_limits().map_or(u64::MAX, |limits| limits.total_memory);
+            system.total_memory().min(container)
         });
         Options { threads, memory: (machine / 2).max(1 << 28) }
     }
@@ -114,10 +117,8 @@ impl Session {
         progress: &Progress,
     ) -> Result<Session, TraceError> {
         assert!(options.threads > 0, "a session needs a thread");
-        let pool = ThreadPoolBuilder::new()
-            .num_threads(options.threads)
-            .build()
-            .expect("the system gives a few threads");
+        let pool = ThreadPoolBuilder::new().num_threads(options.threads).build();
+        let pool = pool.map_err(|_| TraceError::Threads { threads: options.threads })?;
         let start = Instant::now();
         let geometry = Geometry::build(&scene, progress)?;
         let geometry_seconds = start.elapsed().as_secs_f64();
@@ -156,7 +157,7 @@ impl Session {
             milliseconds: 0.0,
         };
         if let Some(reason) = self.needs_rays(&scene, &change) {
-            self.retrace(scene, progress)?;
+            self.retrace(scene, change.geometry, progress)?;
             report.class = Class::Retrace;
             report.reason = Some(reason);
             report.rays = self.trace.rays;
@@ -228,16 +229,25 @@ impl Session {
         });
     }
 
-    fn retrace(&mut self, scene: Scene, progress: &Progress) -> Result<(), TraceError> {
+    /// Traces `scene`, after compiling its geometry if `compile` says that it differs.
+    fn retrace(
+        &mut self,
+        scene: Scene,
+        compile: bool,
+        progress: &Progress,
+    ) -> Result<(), TraceError> {
         let start = Instant::now();
-        let geometry = Geometry::build(&scene, progress)?;
-        self.geometry_seconds = start.elapsed().as_secs_f64();
+        let compiled = if compile { Some(Geometry::build(&scene, progress)?) } else { None };
+        let seconds = start.elapsed().as_secs_f64();
+        let geometry = compiled.as_ref().unwrap_or(&self.geometry);
         let released = vec![None; self.forest.tiles.len()];
         let old = Forest { tiles: released, ..self.forest };
         let reuse = std::mem::replace(&mut self.forest, old);
-        let traced = trace(&scene, &geometry, &self.pool, self.options.memory, reuse, progress)?;
+        let traced = trace(&scene, geometry, &self.pool, self.options.memory, reuse, progress)?;
         self.scene = scene;
-        self.geometry = geometry;
+        if let Some(geometry) = compiled {
+            (self.geometry, self.geometry_seconds) = (geometry, seconds);
+        }
         self.forest = traced.forest;
         self.transport = traced.transport;
         self.program = TermProgram::new(&self.transport.trie);
@@ -256,7 +266,7 @@ impl Session {
 
     /// Traces the same scene again, into the memory of the present trees.
     pub fn trace_again(&mut self, progress: &Progress) -> Result<(), TraceError> {
-        self.retrace(self.scene.clone(), progress)
+        self.retrace(self.scene.clone(), false, progress)
     }
 
     /// What making `scene` the session's would cost.
@@ -295,7 +305,7 @@ impl Session {
     }
 
     /// The trees of one tile, grown again if they were released.
-    pub fn trees(&self, tile: usize, progress: &Progress) -> Result<TileTrees, Cancelled> {
+    pub fn trees(&self, tile: usize, progress: &Progress) -> Result<TileTrees, TraceError> {
         if let Some(trees) = &self.forest.tiles[tile] {
             return Ok(trees.clone());
         }
@@ -303,7 +313,9 @@ impl Session {
         let mut worker = grower.worker();
         let mut trees = TileTrees::default();
         for block in 0..crate::film::layout::TILE_BLOCKS {
-            grower.block(&mut worker, (tile, block), &mut trees, progress)?;
+            let most = usize::try_from(self.options.memory).unwrap_or(usize::MAX);
+            let grown = grower.block(&mut worker, (tile, block), &mut trees, most, progress);
+            grown.map_err(|stop| TraceError::of(stop, most))?;
         }
         Ok(trees)
     }
@@ -341,6 +353,11 @@ impl Session {
     /// The value of every term.
     pub fn terms(&self) -> &TermValues {
         &self.terms
+    }
+
+    /// Allocated bytes of the terms, as code and as values.
+    pub fn term_bytes(&self) -> usize {
+        self.program.bytes() + self.terms.bytes() + self.before.capacity() * size_of::<[f32; 4]>()
     }
 
     /// The picture as shown.

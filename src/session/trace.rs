@@ -12,7 +12,7 @@ use crate::fold::Folder;
 use crate::fold::transport::{Highlights, Transport, TransportTile};
 use crate::fold::trie::Trie;
 use crate::forest::Forest;
-use crate::forest::grow::{Discard, Grower, RayCounts, Worker};
+use crate::forest::grow::{Discard, Grower, MOST_CROSSED, RayCounts, Stop, Worker};
 use crate::forest::tree::TileTrees;
 use crate::geometry::Geometry;
 use crate::progress::{Cancelled, Progress};
@@ -23,6 +23,18 @@ use crate::scene::Scene;
 pub enum TraceError {
     /// It was cancelled.
     Cancelled,
+    /// The system does not give that many threads.
+    Threads {
+        /// How many were asked for.
+        threads: usize,
+    },
+    /// A shadow ray crosses more transparent surfaces than a tree can record.
+    Surfaces,
+    /// The ray trees of sixteen pixels alone do not fit into the share of a thread.
+    Branches {
+        /// The budget in bytes.
+        budget: u64,
+    },
     /// The matrix alone, without trees and highlight lists, needs more than the budget.
     Memory {
         /// The budget in bytes.
@@ -36,10 +48,36 @@ impl From<Cancelled> for TraceError {
     }
 }
 
+impl TraceError {
+    /// What a stop means to the whole trace.
+    pub(super) fn of(stop: Stop, budget: usize) -> TraceError {
+        match stop {
+            Stop::Cancelled => TraceError::Cancelled,
+            Stop::Surfaces => TraceError::Surfaces,
+            Stop::Branches => TraceError::Branches { budget: budget as u64 },
+        }
+    }
+}
+
 impl fmt::Display for TraceError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             TraceError::Cancelled => write!(f, "cancelled"),
+            TraceError::Threads { threads } => {
+                write!(f, "the system does not give {threads} threads: ask for fewer (--threads)")
+            }
+            TraceError::Surfaces => write!(
+                f,
+                "a shadow ray crosses more than {MOST_CROSSED} transparent surfaces: make some of \
+                 them opaque (transmit = 0) or leave some out"
+            ),
+            TraceError::Branches { budget } => write!(
+                f,
+                "the rays branch so often that the trees of sixteen pixels do not fit into their \
+                 share of the budget of {:.2} GiB: lower trace.depth, raise trace.cutoff, or lower \
+                 reflect or transmit",
+                *budget as f64 / f64::from(1 << 30)
+            ),
             TraceError::Memory { budget } => write!(
                 f,
                 "the picture needs more memory than the budget of {:.2} GiB: raise the budget, \
@@ -81,17 +119,19 @@ pub fn trace_only(
     geometry: &Geometry,
     pool: &ThreadPool,
     progress: &Progress,
-) -> Result<TraceReport, Cancelled> {
+) -> Result<TraceReport, TraceError> {
     let start = Instant::now();
     let grower = Grower::new(scene, geometry);
     let tiles = Layout::new(scene.picture.size).tiles();
     progress.begin(tiles as u64);
     let next = AtomicUsize::new(0);
-    let counts = pool.broadcast(|_| {
+    let counts = pool.broadcast(|_| -> Result<RayCounts, TraceError> {
         let mut worker = grower.worker();
         while let Some(tile) = claim(&next, tiles) {
             for block in 0..TILE_BLOCKS {
-                grower.block(&mut worker, (tile, block), &mut Discard, progress)?;
+                let at = (tile, block);
+                let grown = grower.block(&mut worker, at, &mut Discard, usize::MAX, progress);
+                grown.map_err(|stop| TraceError::of(stop, usize::MAX))?;
             }
             progress.step();
         }
@@ -128,7 +168,7 @@ pub fn trace(
         report.fold_seconds += folding.as_secs_f64() / threads;
     }
     let merging = Instant::now();
-    let (forest, transport) = job.finish(pool);
+    let (forest, transport) = job.finish(pool)?;
     report.fold_seconds += merging.elapsed().as_secs_f64();
     report.seconds = start.elapsed().as_secs_f64();
     Ok(Traced { forest, transport, report })
@@ -155,6 +195,9 @@ struct Job<'a> {
     /// A tile whose trees need more than this is not kept.
     tile_limit: usize,
 }
+
+/// A block's trees may always take this many bytes while it is folded.
+const LEAST_BLOCK_LIMIT: usize = 1 << 26;
 
 /// What is there of one tile.
 #[derive(Default)]
@@ -257,8 +300,7 @@ impl<'a> Job<'a> {
         while let Some(tile) = claim(&self.next, self.layout.tiles()) {
             // Memory of the earlier trace is written at once, new memory is taken when its size is
             // known.
-            let mut old = self.slot(tile).old.take();
-            let reused = old.as_ref().map_or(0, TileTrees::bytes);
+            let mut old = self.take_old(tile);
             let trees = old.as_mut().unwrap_or(&mut scratch);
             let whole = self.tile(tile, &mut worker, &mut folder, trees, &mut outcome)?;
             let folding = Instant::now();
@@ -266,7 +308,7 @@ impl<'a> Job<'a> {
             outcome.folding += folding.elapsed();
             // A clone takes no more memory than it needs.
             let kept = whole.then(|| old.map_or_else(|| scratch.clone(), TileTrees::trimmed));
-            self.store(tile, kept, reused, transport)?;
+            self.store(tile, kept, transport)?;
             self.progress.step();
         }
         outcome.rays = worker.rays;
@@ -281,13 +323,16 @@ impl<'a> Job<'a> {
         folder: &mut Folder,
         trees: &mut TileTrees,
         outcome: &mut Outcome,
-    ) -> Result<bool, Cancelled> {
+    ) -> Result<bool, TraceError> {
         folder.begin_tile();
         trees.clear();
         let mut whole = true;
         for block in 0..TILE_BLOCKS {
             let before = trees.nodes.len();
-            self.grower.block(worker, (tile, block), trees, self.progress)?;
+            let at = (tile, block);
+            let most = trees.used_bytes() + self.tile_limit.max(LEAST_BLOCK_LIMIT);
+            let grown = self.grower.block(worker, at, trees, most, self.progress);
+            grown.map_err(|stop| TraceError::of(stop, self.budget))?;
             outcome.nodes += (trees.nodes.len() - before) as u64;
             let folding = Instant::now();
             let covered: [bool; LANES] = std::array::from_fn(|lane| {
@@ -295,7 +340,7 @@ impl<'a> Job<'a> {
             });
             folder.block(&mut trees.read(trees.blocks.len() - 1), covered, self.samples);
             outcome.folding += folding.elapsed();
-            whole &= trees.bytes() <= self.tile_limit;
+            whole &= trees.used_bytes() <= self.tile_limit;
             if !whole {
                 trees.clear();
             }
@@ -306,7 +351,7 @@ impl<'a> Job<'a> {
     /// The tile's part of the matrix, in ids of the picture's trie.
     fn finish_tile(&self, folder: &mut Folder) -> TransportTile {
         let weight = 1.0 / self.samples as f32;
-        let folded = folder.finish_tile(TransportTile::default(), weight, &self.shininess);
+        let folded = folder.finish_tile(weight, &self.shininess);
         let mut tile = folded.tile;
         let mut global = vec![0u32; folded.trie.nodes().len()];
         let mut trie = self.trie.lock().expect("no worker panicked");
@@ -323,19 +368,16 @@ impl<'a> Job<'a> {
 
     /// Keeps a tile. Where the budget asks for it, memory of the earlier trace goes first, then this
     /// tile's trees and those of others, then highlight lists: the matrix alone is always kept.
-    /// `reused` are the bytes of the earlier trace that the tile's trees took over or gave back.
     fn store(
         &self,
         tile: usize,
         trees: Option<TileTrees>,
-        reused: usize,
         transport: TransportTile,
     ) -> Result<(), TraceError> {
         // Whoever holds the ledger may lock a slot, never the other way round.
         let mut ledger = self.ledger.lock().expect("no worker panicked");
         let mut slot = self.slot(tile);
         (slot.trees, slot.transport) = (trees, transport);
-        ledger.bytes -= reused;
         ledger.bytes += slot.transport.bytes() + slot.list_bytes() + slot.tree_bytes();
         if slot.trees.is_some() {
             ledger.trees.push(tile);
@@ -345,16 +387,27 @@ impl<'a> Job<'a> {
         ledger.release(&self.slots, self.budget)
     }
 
+    /// Memory of the earlier trace for a tile: from now on it counts as the tile's own need.
+    fn take_old(&self, tile: usize) -> Option<TileTrees> {
+        let mut ledger = self.ledger.lock().expect("no worker panicked");
+        let old = self.slot(tile).old.take();
+        ledger.bytes -= old.as_ref().map_or(0, TileTrees::bytes);
+        old
+    }
+
     fn slot(&self, tile: usize) -> MutexGuard<'_, Slot> {
         self.slots[tile].lock().expect("no worker panicked")
     }
 
     /// Numbers the terms canonically and puts the tiles together.
-    fn finish(self, pool: &ThreadPool) -> (Forest, Transport) {
+    fn finish(self, pool: &ThreadPool) -> Result<(Forest, Transport), Cancelled> {
         use rayon::prelude::*;
         let provisional = self.trie.into_inner().expect("no worker panicked");
+        self.progress.check()?;
         let ranks = provisional.canonical_ranks();
+        self.progress.check()?;
         let trie = provisional.renumbered(&ranks);
+        self.progress.check()?;
         let slots = self.slots.into_iter().map(|s| s.into_inner().expect("no worker panicked"));
         let (trees, mut tiles): (Vec<_>, Vec<_>) = slots.map(|s| (s.trees, s.transport)).unzip();
         pool.install(|| {
@@ -366,6 +419,6 @@ impl<'a> Job<'a> {
         });
         let (layout, samples) = (self.layout, self.samples);
         let forest = Forest { layout, samples, tiles: trees };
-        (forest, Transport { layout, samples, trie, tiles })
+        Ok((forest, Transport { layout, samples, trie, tiles }))
     }
 }

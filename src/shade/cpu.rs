@@ -1,8 +1,8 @@
 //! The matrix product on the CPU: tiles in parallel, vector lanes across pixels.
 //!
-//! A pixel is summed term after term from +0 in canonical order. Terms that are zero are skipped:
-//! adding zero changes no bit of a sum that began at +0, because no coefficient in front of it is
-//! infinite and no partial sum is −0.
+//! A pixel is two sums, each from +0 in canonical order: its planes, then its single coefficients.
+//! Planes of terms that are zero are skipped: adding zero changes no bit of a sum that began at +0,
+//! because no coefficient in front of it is infinite and no partial sum is −0.
 
 use fearless_simd::{Level, dispatch};
 use rayon::ThreadPool;

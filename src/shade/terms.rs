@@ -78,6 +78,13 @@ pub struct TermValues {
 const DEAD: u32 = u32::MAX;
 
 impl TermValues {
+    /// Allocated bytes.
+    pub fn bytes(&self) -> usize {
+        let TermValues { values, weights, table } = self;
+        (values.capacity() + table.capacity()) * size_of::<[f32; 4]>()
+            + weights.capacity() * size_of::<PathWeight>()
+    }
+
     /// Evaluates every term: parents first, one multiplication each, in `f32` and clamped to finite
     /// values, so that a zero coefficient in front of it stays zero.
     pub fn evaluate(&mut self, program: &TermProgram, factors: &FactorValues) {

@@ -131,3 +131,34 @@ fn an_edit_that_does_not_fit_leaves_the_old_picture() {
     assert_eq!(edited(&mut session, "materials.mirror.reflect", "0.3"), Class::Reshade);
     assert_eq!(edited(&mut session, "materials.mirror.shininess", "30"), Class::Refold);
 }
+
+/// Glass that neither weight nor cut-off stops: every ray branches in two, 64 times.
+fn endless() -> Scene {
+    let mut scene = shipped("glass", [32, 18], 1);
+    set(&mut scene, "trace.cutoff", "0");
+    set(&mut scene, "trace.depth", "64");
+    for material in &mut scene.materials {
+        material.reflect = rayforest::color::Rgb::WHITE;
+        material.transmit = rayforest::color::Rgb::WHITE;
+    }
+    scene
+}
+
+#[test]
+fn rays_that_branch_without_end_are_refused_and_not_followed_until_memory_ends() {
+    let error = within(&endless(), 1 << 20).err();
+    assert_eq!(error, Some(TraceError::Branches { budget: 1 << 20 }));
+    assert!(TraceError::Branches { budget: 1 << 20 }.to_string().contains("trace.depth"));
+}
+
+#[test]
+fn rays_that_branch_without_end_can_be_cancelled() {
+    let progress = Progress::default();
+    let options = Options { threads: 2, memory: 1 << 33 };
+    std::thread::scope(|scope| {
+        let job = scope.spawn(|| Session::open(endless(), options, &progress).err());
+        std::thread::sleep(std::time::Duration::from_millis(100));
+        progress.cancel();
+        assert_eq!(job.join().unwrap(), Some(TraceError::Cancelled));
+    });
+}
