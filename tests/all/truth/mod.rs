@@ -2,6 +2,7 @@
 //! and the same scene in other units.
 
 mod evaluator;
+mod golden;
 mod image_scale;
 mod physics;
 mod picture;
