@@ -116,6 +116,7 @@ pub struct Grower<'a> {
     geometry: &'a Geometry,
     values: FactorValues,
     opaque: Vec<bool>,
+    /// Directions are of length 1.
     lights: Vec<LightPlace>,
     iors: Vec<f64>,
     view: View,
@@ -158,7 +159,7 @@ impl<'a> Grower<'a> {
             geometry,
             opaque: values.opaque(),
             values,
-            lights: scene.lights.iter().map(|l| l.place.clone()).collect(),
+            lights: scene.lights.iter().map(|l| with_unit_direction(&l.place)).collect(),
             iors: scene.materials.iter().map(|m| m.ior).collect(),
             view: View::new(&scene.camera, scene.picture.size),
             layout: Layout::new(scene.picture.size),
@@ -317,7 +318,7 @@ impl<'a> Grower<'a> {
     ) -> Result<(), Stop> {
         let to_light = match place {
             LightPlace::Point(p) => (*p - at.point).normalize_or_zero(),
-            LightPlace::Direction(d) => -d.normalize(),
+            LightPlace::Direction(d) => -*d,
         };
         if surface.geometric.dot(to_light) <= 0.0 {
             return Ok(());
@@ -377,6 +378,14 @@ impl<'a> Grower<'a> {
             let inside = if behind == front { own } else { media.top(front) };
             Crossing { eta: ior(inside) / ior(media.top(behind)), behind }
         }
+    }
+}
+
+/// A light's place, its direction of length 1.
+fn with_unit_direction(place: &LightPlace) -> LightPlace {
+    match place {
+        LightPlace::Point(point) => LightPlace::Point(*point),
+        LightPlace::Direction(along) => LightPlace::Direction(along.normalize()),
     }
 }
 
