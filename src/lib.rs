@@ -59,6 +59,9 @@ pub mod fold;
 pub mod shade;
 // the program without a face
 pub mod session;
+// the work of a person: files, history, recovery
+pub mod document;
 // faces
 pub mod bench;
 pub mod cli;
+pub mod viewer;

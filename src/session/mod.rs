@@ -1,6 +1,8 @@
 //! The program without a window: a scene in, a picture out, and the least work for every edit.
 
+pub mod cost;
 pub mod inspect;
+pub mod live;
 pub mod trace;
 
 use std::fmt;

@@ -1,0 +1,1 @@
+//! The window: a picture, its scene beside it, and every control with its cost.
