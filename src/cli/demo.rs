@@ -1,4 +1,4 @@
-//! The program without a command: renders a scene, re-shades it by some edits, prints both times.
+//! The program without a command and without a display: renders a scene, re-shades it by some edits, prints both times.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use crate::scene::{Scene, read, write};
 use crate::session::{Options, Session};
 
 /// Where the first picture goes: into the present folder.
-const PICTURE: &str = "rayforest.png";
+pub(super) const PICTURE: &str = "rayforest.png";
 
 /// The scene that is always there.
 const BUILT_IN: &str = include_str!("../../scenes/whitted.toml");

@@ -16,12 +16,13 @@ use crate::film::write::check_writable;
 use crate::scene::energy::{Overbright, overbright};
 use crate::scene::{Scene, path, read};
 use crate::session::Options;
+use crate::viewer::WindowError;
 
 /// Traces a scene once, keeps every pixel's ray tree, and re-shades it exactly after every edit.
 #[derive(Debug, Parser)]
 #[command(name = "rayforest", version, about, args_conflicts_with_subcommands = true)]
 pub struct Arguments {
-    /// What to do; without it the scene (or the built-in one) is rendered and re-shaded by some edits.
+    /// What to do; without it the scene (or the built-in one) is opened in the window.
     #[command(subcommand)]
     mode: Option<Mode>,
     /// A scene file.
@@ -109,11 +110,23 @@ pub fn report(failure: &Failure) {
 /// Does what the command line asks for.
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
     match arguments.mode {
-        None => demo::run(arguments.scene.as_deref()),
+        None => window(arguments.scene),
         Some(Mode::Render(render)) => render.run(),
         Some(Mode::Inspect(inspect)) => inspect.run(),
         Some(Mode::Check(check)) => check.run(),
         Some(Mode::Bench(bench)) => bench.run(),
+    }
+}
+
+/// Opens the window; without a display, renders the scene instead.
+fn window(scene: Option<PathBuf>) -> Result<(), Failure> {
+    match crate::viewer::run(scene.clone(), Options::default()) {
+        Ok(()) => Ok(()),
+        Err(error @ WindowError::NoDisplay(_)) => {
+            say(&format!("{error}: rendering to {} instead", demo::PICTURE));
+            demo::run(scene.as_deref())
+        }
+        Err(error @ WindowError::NoGraphics(_)) => Err(Failure::job(error)),
     }
 }
 

@@ -37,6 +37,11 @@ impl Document {
         todo!()
     }
 
+    /// The built-in scene.
+    pub fn built_in() -> Document {
+        todo!()
+    }
+
     /// Opens a scene file.
     pub fn open(_path: &Path) -> Result<Document, DocumentError> {
         todo!()
@@ -115,6 +120,11 @@ impl Document {
     pub fn saved(&mut self, _save: Save) {
         todo!()
     }
+}
+
+/// What makes an edited scene useless that was useful before, if anything does.
+pub fn flaw(_before: &Scene, _after: &Scene) -> Option<String> {
+    todo!()
 }
 
 impl Save {

@@ -94,6 +94,12 @@ pub fn set(scene: &mut Scene, path: &str, value: &str) -> Result<(), PathError> 
     Ok(())
 }
 
+/// The path of `key` in the table at `path`, which is empty for the scene itself.
+pub fn join(path: &str, key: &str) -> String {
+    let key = bare_or_quoted(key);
+    if path.is_empty() { key } else { format!("{path}.{key}") }
+}
+
 /// Parses `value` and writes it into the slot; after an error: what is wrong, and a way out.
 fn assign(
     slot: &mut Slot<'_>,

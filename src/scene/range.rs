@@ -40,6 +40,15 @@ impl Range {
             && (x < self.high || (self.high_included && x == self.high))
     }
 
+    /// The nearest number that may be the value; a millionth inside an end that may not. 0, or the
+    /// end nearest to it, for NaN.
+    pub fn clamp(&self, x: f64) -> f64 {
+        let inside = 1e-6 * (self.high - self.low).min(1.0);
+        let low = if self.low_included { self.low } else { self.low + inside };
+        let high = if self.high_included { self.high } else { self.high - inside };
+        if x.is_nan() { 0f64.clamp(low, high) } else { x.clamp(low, high) }
+    }
+
     /// The end of the range that `x` lies beyond, if that end is itself allowed.
     pub(super) fn nearest_end(&self, x: f64) -> Option<f64> {
         if x < self.low && self.low_included {
@@ -111,6 +120,17 @@ impl Kind {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn clamping_always_gives_an_allowed_value() {
+        for range in [Range::closed(0.0, 1.0), Range::above(0.0, 1e12), Range::between(0.0, 180.0)]
+        {
+            for x in [f64::NEG_INFINITY, -1.0, 0.0, 0.5, 180.0, 1e13, f64::INFINITY, f64::NAN] {
+                assert!(range.contains(range.clamp(x)), "{range}: {x}");
+            }
+            assert_eq!(range.clamp(0.5), 0.5);
+        }
+    }
 
     #[test]
     fn ranges_say_what_they_hold() {

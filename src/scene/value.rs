@@ -26,6 +26,11 @@ impl Names {
         let index = list.iter().cloned().enumerate().map(|(i, name)| (name, i)).collect();
         Names { list, index }
     }
+
+    /// The names in the order of their indices.
+    pub fn list(&self) -> &[String] {
+        &self.list
+    }
 }
 
 /// What a value is read for: the words of its error messages.

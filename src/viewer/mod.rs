@@ -1,1 +1,69 @@
 //! The window: a picture, its scene beside it, and every control with its cost.
+
+mod app;
+mod badge;
+mod command;
+mod control;
+pub mod dialog;
+mod export;
+mod files;
+mod hints;
+mod inspector;
+mod menu;
+mod modal;
+mod navigate;
+mod notice;
+mod outline;
+mod path_field;
+mod picture;
+mod start;
+mod status;
+mod style;
+
+pub use app::App;
+pub use start::{WindowError, run};
+
+use std::path::PathBuf;
+
+use crate::session::Options;
+use dialog::Dialogs;
+
+/// Where the window keeps what it remembers.
+#[derive(Clone, Debug)]
+pub struct Folders {
+    /// Settings and recent files.
+    pub settings: PathBuf,
+    /// Unsaved work.
+    pub recovery: PathBuf,
+}
+
+impl Folders {
+    /// Where this platform wants them; beside the present folder if it does not say.
+    pub fn of_platform() -> Folders {
+        match directories::ProjectDirs::from("", "", "rayforest") {
+            Some(dirs) => Folders {
+                settings: dirs.config_dir().to_owned(),
+                recovery: dirs.state_dir().unwrap_or(dirs.data_local_dir()).join("unsaved"),
+            },
+            None => {
+                Folders { settings: ".rayforest".into(), recovery: ".rayforest/unsaved".into() }
+            }
+        }
+    }
+
+    fn settings_file(&self) -> PathBuf {
+        self.settings.join("settings.toml")
+    }
+}
+
+/// What a window starts with.
+pub struct Setup {
+    /// Threads and memory of its session.
+    pub options: Options,
+    /// Where it keeps what it remembers.
+    pub folders: Folders,
+    /// How it asks for files.
+    pub dialogs: Box<dyn Dialogs>,
+    /// The scene to open; the built-in one if there is none.
+    pub scene: Option<PathBuf>,
+}

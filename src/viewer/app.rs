@@ -1,0 +1,306 @@
+//! The window's state and one turn of its loop.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use eframe::egui::{CentralPanel, Context, Frame, Margin, Panel, Ui, Vec2, ViewportCommand};
+
+use super::Setup;
+use super::command::Command;
+use super::files::Files;
+use super::inspector::{Known, Outcome, Selection, inspector_ui, paths};
+use super::menu::{MenuState, menu_ui};
+use super::notice::Notices;
+use super::outline::outline_ui;
+use super::picture::PictureView;
+use super::status::status_ui;
+use super::style;
+use crate::document::recovery::Recovery;
+use crate::document::settings::Settings;
+use crate::document::{Document, flaw};
+use crate::scene::{Scene, path};
+use crate::session::live::{Event, Live, Shown};
+
+/// How long the wheel may rest within one gesture.
+const WHEEL_REST: Duration = Duration::from_millis(400);
+
+/// The window: a document, its live session, and what is on the screen.
+pub struct App {
+    pub(super) document: Document,
+    pub(super) live: Live,
+    pub(super) selection: Selection,
+    pub(super) picture: PictureView,
+    pub(super) shown: Option<Shown>,
+    pub(super) settings: Settings,
+    pub(super) notices: Notices,
+    pub(super) files: Files,
+    /// Where unsaved work is kept; `None` if there is no such place, which was said.
+    pub(super) recovery: Option<Recovery>,
+    /// The selection whose costs are watched, and how many solids and materials the scene had.
+    watched: Option<Vec<String>>,
+    /// A gesture of the wheel lasts until then.
+    wheel_until: Option<Instant>,
+    /// Size of the picture's view in points.
+    view: Vec2,
+}
+
+impl App {
+    /// Opens the scene of `setup`, or the built-in one.
+    pub fn new(ctx: &Context, setup: Setup) -> App {
+        style::set_up(ctx);
+        let waker = ctx.clone();
+        let live = Live::new(setup.options, move || waker.request_repaint());
+        let mut notices = Notices::default();
+        let (settings, fault) = Settings::read(&setup.folders.settings_file());
+        if let Some(fault) = fault {
+            notices.error(fault);
+        }
+        style::apply(ctx, &settings);
+        let (recovery, found) = match Recovery::start(&setup.folders.recovery) {
+            Ok((recovery, found)) => (Some(recovery), found),
+            Err(error) => {
+                notices.error(format!("unsaved work cannot be kept: {}", error.message));
+                (None, Vec::new())
+            }
+        };
+        let document = Document::built_in();
+        live.want(Arc::new(document.scene().clone()));
+        let mut app = App {
+            document,
+            live,
+            selection: Selection::Scene,
+            picture: PictureView::new(),
+            shown: None,
+            settings,
+            notices,
+            files: Files::new(setup.folders, setup.dialogs),
+            recovery,
+            watched: None,
+            wheel_until: None,
+            view: Vec2::ZERO,
+        };
+        if let Some(path) = setup.scene {
+            app.open_in_background(ctx, path);
+        }
+        app.files.offer_recovery(found);
+        app
+    }
+
+    /// One turn: takes what has arrived, shows everything, passes edits on.
+    pub fn ui(&mut self, ui: &mut Ui) {
+        let ctx = ui.ctx().clone();
+        self.receive(ui);
+        self.receive_files(&ctx);
+        let mut commands = self.shortcuts(&ctx);
+        let mut edited = self.document.scene().clone();
+        let mut changed = false;
+        self.bars(ui, &mut commands);
+        let outcome = self.panels(ui, &mut edited);
+        changed |= self.apply_outcome(outcome, &mut edited);
+        changed |= self.picture_ui(ui, &mut edited);
+        if changed {
+            self.commit(edited);
+        }
+        self.end_gesture(&ctx);
+        self.modals(&ctx);
+        for command in commands {
+            self.run(&ctx, command);
+        }
+        self.watch_costs();
+        self.autosave(&ctx);
+    }
+
+    /// Takes pictures and events from the session.
+    fn receive(&mut self, ui: &Ui) {
+        if let Some(shown) = self.live.take_shown() {
+            self.picture.set_frame(ui, &shown.frame, shown.scene.picture.size);
+            self.shown = Some(shown);
+        }
+        for event in self.live.take_events() {
+            match event {
+                Event::Exported(path) => self.notices.say(format!("wrote {}", path.display())),
+                Event::Failed(message) => self.notices.error(message),
+            }
+        }
+    }
+
+    /// The commands whose keys were pressed.
+    fn shortcuts(&self, ctx: &Context) -> Vec<Command> {
+        if self.files.is_modal() {
+            return Vec::new();
+        }
+        let typing = ctx.egui_wants_keyboard_input();
+        let plain = |c: &Command| c.shortcut().is_some_and(|s| s.modifiers.is_none());
+        let usable = Command::WITH_SHORTCUTS.into_iter().filter(|c| !(typing && plain(c)));
+        usable
+            .filter(|command| {
+                let shortcut = command.shortcut();
+                shortcut.is_some_and(|s| ctx.input_mut(|input| input.consume_shortcut(&s)))
+            })
+            .collect()
+    }
+
+    /// Menu and status line.
+    fn bars(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let before = self.settings.clone();
+        let bar = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(8, 4));
+        Panel::top("menu").frame(bar).show(ui, |ui| {
+            let state =
+                MenuState { document: &self.document, camera_tool: self.picture.camera_tool };
+            commands.extend(menu_ui(ui, &state, &mut self.settings));
+        });
+        if self.settings != before {
+            style::apply(ui.ctx(), &self.settings);
+            self.remember_settings();
+        }
+        Panel::bottom("status").frame(bar).show(ui, |ui| {
+            let status = self.live.status();
+            commands.extend(status_ui(ui, &status, self.shown.as_ref()));
+        });
+    }
+
+    /// Outline and inspector.
+    fn panels(&mut self, ui: &mut Ui, edited: &mut Scene) -> Outcome {
+        self.selection = self.selection.within(edited);
+        let outline = Panel::left("outline").default_size(180.0).min_size(120.0);
+        let chosen = outline.show(ui, |ui| outline_ui(ui, edited, self.selection)).inner;
+        let inspector = Panel::right("inspector").default_size(400.0).min_size(360.0);
+        let inspected = inspector.show(ui, |ui| {
+            let costs = self.live.costs();
+            let known = Known { saved: self.document.saved_scene(), costs: &costs };
+            inspector_ui(ui, edited, self.selection, &known)
+        });
+        let mut outcome = inspected.inner;
+        outcome.select = outcome.select.or(chosen);
+        outcome
+    }
+
+    /// Takes over what was done in the panels; whether the scene was edited.
+    fn apply_outcome(&mut self, outcome: Outcome, edited: &mut Scene) -> bool {
+        let mut changed = outcome.changed;
+        for (name, value) in outcome.assignments {
+            match path::set(edited, &name, &value) {
+                Ok(()) => changed = true,
+                Err(error) => self.notices.error(error.to_string()),
+            }
+        }
+        if let Some(selection) = outcome.select {
+            self.selection = selection;
+        }
+        changed
+    }
+
+    /// The picture; whether the camera was moved.
+    fn picture_ui(&mut self, ui: &mut Ui, edited: &mut Scene) -> bool {
+        let outcome = CentralPanel::no_frame()
+            .show(ui, |ui| {
+                self.view = ui.available_size();
+                let outcome = self.picture.ui(ui, &mut edited.camera);
+                self.notices.ui(ui);
+                outcome
+            })
+            .inner;
+        if let Some(point) = outcome.clicked
+            && let Some(picked) = self.live.pick(point)
+        {
+            let solid = ui.input(|i| i.modifiers.alt);
+            self.selection = match solid {
+                true => Selection::Solid(picked.solid),
+                false => Selection::Material(picked.material),
+            };
+        }
+        if outcome.camera_moved && !ui.input(|i| i.pointer.any_down()) {
+            self.wheel_until = Some(Instant::now() + WHEEL_REST);
+            ui.ctx().request_repaint_after(WHEEL_REST);
+        }
+        outcome.camera_moved
+    }
+
+    /// Makes an edited scene the document's, unless it makes no sense.
+    fn commit(&mut self, edited: Scene) {
+        match flaw(self.document.scene(), &edited) {
+            Some(message) => self.notices.error(message),
+            None => {
+                self.document.change(edited);
+                self.show_scene();
+            }
+        }
+    }
+
+    /// Passes the document's scene to the session.
+    pub(super) fn show_scene(&mut self) {
+        self.live.want(Arc::new(self.document.scene().clone()));
+        self.files.touched();
+    }
+
+    /// A gesture ends when no button is down and the wheel rests.
+    fn end_gesture(&mut self, ctx: &Context) {
+        let wheel = self.wheel_until.is_some_and(|until| Instant::now() < until);
+        if !wheel && !ctx.input(|i| i.pointer.any_down()) {
+            self.wheel_until = None;
+            self.document.end_gesture();
+        }
+    }
+
+    /// Does what a command says.
+    pub(super) fn run(&mut self, ctx: &Context, command: Command) {
+        let dots = ctx.pixels_per_point();
+        match command {
+            Command::Undo | Command::Redo => {
+                self.document.end_gesture();
+                let undo = command == Command::Undo;
+                if if undo { self.document.undo() } else { self.document.redo() } {
+                    self.show_scene();
+                }
+            }
+            Command::Fit => self.picture.fit(),
+            Command::ActualSize => self.picture.actual_size(),
+            Command::ZoomIn => self.picture.zoom_by(1.25, self.view, dots),
+            Command::ZoomOut => self.picture.zoom_by(0.8, self.view, dots),
+            Command::CameraTool => self.picture.camera_tool = !self.picture.camera_tool,
+            Command::Stop => self.live.cancel(),
+            Command::Resume => self.live.resume(),
+            Command::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
+            Command::New(_)
+            | Command::Open
+            | Command::OpenRecent(_)
+            | Command::Save
+            | Command::SaveAs
+            | Command::Export => self.run_file_command(ctx, command),
+        }
+    }
+
+    /// Asks for the costs of what the inspector shows.
+    fn watch_costs(&mut self) {
+        let wanted = paths(self.document.scene(), self.selection.within(self.document.scene()));
+        if self.watched.as_ref() != Some(&wanted) {
+            self.live.watch_costs(wanted.clone());
+            self.watched = Some(wanted);
+        }
+    }
+
+    /// The document, for tests and measurements.
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// The picture on the screen, for tests and measurements.
+    pub fn shown(&self) -> Option<&Shown> {
+        self.shown.as_ref()
+    }
+
+    /// The session, for tests and measurements.
+    pub fn live(&self) -> &Live {
+        &self.live
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
+        App::ui(self, ui);
+    }
+
+    fn on_exit(&mut self, _: Option<&eframe::glow::Context>) {
+        self.leave();
+    }
+}

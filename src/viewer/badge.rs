@@ -1,0 +1,114 @@
+//! The cost of a control, shown beside it before it is touched.
+
+use eframe::egui::{Align2, Color32, FontId, Sense, Ui, Vec2, WidgetInfo, WidgetType, vec2};
+
+use crate::session::cost::Cost;
+
+/// How dear an edit is, for its colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Price {
+    Free,
+    Mixed,
+    Dear,
+    Unknown,
+}
+
+/// What the badge says.
+pub(super) fn text(cost: Option<Cost>) -> String {
+    match cost {
+        None => "…".into(),
+        Some(Cost::Instant) => "instant".into(),
+        Some(Cost::InstantUpTo(x)) => format!("instant ≤ {}", rounded(x, f64::floor)),
+        Some(Cost::InstantDownTo(x)) => format!("instant ≥ {}", rounded(x, f64::ceil)),
+        Some(Cost::Refold) => "refold".into(),
+        Some(Cost::TraceAll) => "traces all".into(),
+    }
+}
+
+/// The badge in full.
+pub(super) fn explanation(cost: Option<Cost>) -> String {
+    match cost {
+        None => "The cost is being worked out".into(),
+        Some(Cost::Instant) => "Instant: no ray is cast, whatever the value".into(),
+        Some(Cost::InstantUpTo(x)) => format!(
+            "Instant up to {}; above that branches of the ray trees come alive that were not \
+             traced: traces all",
+            rounded(x, f64::floor)
+        ),
+        Some(Cost::InstantDownTo(x)) => format!(
+            "Instant down to {}; below that branches of the ray trees come alive that were not \
+             traced: traces all",
+            rounded(x, f64::ceil)
+        ),
+        Some(Cost::Refold) => "Highlights are summed again from kept angles; no ray is cast".into(),
+        Some(Cost::TraceAll) => "Moves rays: the picture is traced anew, coarse first".into(),
+    }
+}
+
+/// Three significant digits, rounded to the safe side, so that what is said is true.
+fn rounded(x: f64, to: fn(f64) -> f64) -> String {
+    if x == 0.0 || x.abs() >= 1e6 {
+        return format!("{x}");
+    }
+    let digits = (2 - x.abs().log10().floor() as i32).max(0);
+    let unit = 10f64.powi(digits);
+    let decimals = digits as usize;
+    let text = format!("{:.decimals$}", to(x * unit) / unit);
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}
+
+fn price(cost: Option<Cost>) -> Price {
+    match cost {
+        None => Price::Unknown,
+        Some(Cost::Instant) => Price::Free,
+        Some(Cost::InstantUpTo(_) | Cost::InstantDownTo(_) | Cost::Refold) => Price::Mixed,
+        Some(Cost::TraceAll) => Price::Dear,
+    }
+}
+
+fn dot_color(price: Price, dark: bool) -> Color32 {
+    match (price, dark) {
+        (Price::Free, true) => Color32::from_rgb(96, 200, 120),
+        (Price::Free, false) => Color32::from_rgb(30, 140, 60),
+        (Price::Mixed, true) => Color32::from_rgb(230, 180, 80),
+        (Price::Mixed, false) => Color32::from_rgb(180, 110, 0),
+        (Price::Dear, true) => Color32::from_rgb(235, 110, 100),
+        (Price::Dear, false) => Color32::from_rgb(190, 40, 30),
+        (Price::Unknown, _) => Color32::GRAY,
+    }
+}
+
+/// Draws the badge of the control `name`, `width` wide.
+pub(super) fn badge_ui(ui: &mut Ui, name: &str, cost: Option<Cost>, width: f32) {
+    let size = vec2(width, ui.spacing().interact_size.y);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    let price = price(cost);
+    let center = rect.left_center() + vec2(7.0, 0.0);
+    ui.painter().circle_filled(center, 3.0, dot_color(price, ui.visuals().dark_mode));
+    let (font, color) = (FontId::proportional(11.5), ui.visuals().weak_text_color());
+    let at = center + Vec2::new(8.0, 0.0);
+    ui.painter().text(at, Align2::LEFT_CENTER, text(cost), font, color);
+    response.widget_info(|| {
+        WidgetInfo::labeled(WidgetType::Label, true, format!("cost of {name}: {}", text(cost)))
+    });
+    response.on_hover_ui(|ui| {
+        ui.label(explanation(cost));
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_threshold_is_rounded_to_the_safe_side() {
+        assert_eq!(text(Some(Cost::InstantUpTo(0.447_91))), "instant ≤ 0.447");
+        assert_eq!(text(Some(Cost::InstantDownTo(0.001_234_5))), "instant ≥ 0.00124");
+        assert_eq!(text(Some(Cost::InstantUpTo(0.0))), "instant ≤ 0");
+        assert_eq!(text(Some(Cost::InstantUpTo(10.0))), "instant ≤ 10");
+        assert_eq!(text(Some(Cost::InstantUpTo(120.0))), "instant ≤ 120");
+    }
+}

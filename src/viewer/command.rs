@@ -1,0 +1,142 @@
+//! Everything the window can be told to do, listed once: menus, shortcuts and tooltips read this list.
+
+use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+
+/// A command of the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Command {
+    /// A new scene from the template with this index.
+    New(usize),
+    /// Asks for a scene file and opens it.
+    Open,
+    /// Opens the recent file with this index.
+    OpenRecent(usize),
+    /// Saves to the document's file; asks for one if there is none.
+    Save,
+    /// Asks for a file and saves to it.
+    SaveAs,
+    /// Asks how and where to write a picture.
+    Export,
+    /// Leaves the program.
+    Quit,
+    /// Takes the latest step back.
+    Undo,
+    /// Does it again.
+    Redo,
+    /// The whole picture in the window.
+    Fit,
+    /// One pixel of the picture on one pixel of the screen.
+    ActualSize,
+    /// Enlarges the picture on the screen.
+    ZoomIn,
+    /// Shrinks the picture on the screen.
+    ZoomOut,
+    /// Whether dragging in the picture moves the camera.
+    CameraTool,
+    /// Stops the running trace or export.
+    Stop,
+    /// Traces what a stop left out.
+    Resume,
+}
+
+const CTRL: Modifiers = Modifiers::COMMAND;
+
+impl Command {
+    /// What menus and buttons call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Command::New(_) => "New",
+            Command::Open => "Open…",
+            Command::OpenRecent(_) => "Open recent",
+            Command::Save => "Save",
+            Command::SaveAs => "Save as…",
+            Command::Export => "Export picture…",
+            Command::Quit => "Quit",
+            Command::Undo => "Undo",
+            Command::Redo => "Redo",
+            Command::Fit => "Fit",
+            Command::ActualSize => "1:1",
+            Command::ZoomIn => "Zoom in",
+            Command::ZoomOut => "Zoom out",
+            Command::CameraTool => "Move camera",
+            Command::Stop => "Stop",
+            Command::Resume => "Trace now",
+        }
+    }
+
+    /// What it does, one sentence.
+    pub fn about(self) -> &'static str {
+        match self {
+            Command::New(_) => "Starts a scene from this template",
+            Command::Open => "Opens a scene file",
+            Command::OpenRecent(_) => "Opens this file again",
+            Command::Save => "Writes the changed values into the scene file; its comments stay",
+            Command::SaveAs => "Saves to another file; paths of meshes are adapted",
+            Command::Export => "Writes the picture as PNG or OpenEXR, at its own size or another",
+            Command::Quit => "Closes the window",
+            Command::Undo => "Takes the latest change back",
+            Command::Redo => "Makes the change again that was taken back last",
+            Command::Fit => "Shows the whole picture",
+            Command::ActualSize => "Shows one picture pixel on one pixel of the screen",
+            Command::ZoomIn => "Enlarges the picture; or turn the wheel over it",
+            Command::ZoomOut => "Shrinks the picture; or turn the wheel over it",
+            Command::CameraTool => {
+                "Drag orbits, Shift-drag pans, the wheel dollies; every move traces the picture anew"
+            }
+            Command::Stop => "Stops the trace or the export; the last whole picture stays",
+            Command::Resume => "Traces the picture that was stopped",
+        }
+    }
+
+    /// The keys that give it.
+    pub fn shortcut(self) -> Option<KeyboardShortcut> {
+        let keys = |modifiers, key| Some(KeyboardShortcut::new(modifiers, key));
+        match self {
+            Command::Open => keys(CTRL, Key::O),
+            Command::Save => keys(CTRL, Key::S),
+            Command::SaveAs => keys(CTRL | Modifiers::SHIFT, Key::S),
+            Command::Export => keys(CTRL, Key::E),
+            Command::Quit => keys(CTRL, Key::Q),
+            Command::Undo => keys(CTRL, Key::Z),
+            Command::Redo => keys(CTRL | Modifiers::SHIFT, Key::Z),
+            Command::Fit => keys(Modifiers::NONE, Key::F),
+            Command::ActualSize => keys(Modifiers::NONE, Key::Num1),
+            Command::CameraTool => keys(Modifiers::NONE, Key::C),
+            Command::Stop => keys(Modifiers::NONE, Key::Escape),
+            Command::New(_)
+            | Command::OpenRecent(_)
+            | Command::ZoomIn
+            | Command::ZoomOut
+            | Command::Resume => None,
+        }
+    }
+
+    /// The commands with shortcuts. Those with more modifiers come first, so that Shift-Ctrl-Z is
+    /// not taken for Ctrl-Z.
+    pub const WITH_SHORTCUTS: [Command; 11] = [
+        Command::SaveAs,
+        Command::Redo,
+        Command::Open,
+        Command::Save,
+        Command::Export,
+        Command::Quit,
+        Command::Undo,
+        Command::Fit,
+        Command::ActualSize,
+        Command::CameraTool,
+        Command::Stop,
+    ];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_two_commands_share_a_shortcut() {
+        let keys: Vec<_> = Command::WITH_SHORTCUTS.iter().map(|c| c.shortcut().unwrap()).collect();
+        for (i, a) in keys.iter().enumerate() {
+            assert!(!keys[..i].contains(a), "{a:?}");
+        }
+    }
+}

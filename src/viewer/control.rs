@@ -1,0 +1,403 @@
+//! One row of the inspector: name, control, cost.
+
+use eframe::egui::{Align, CollapsingHeader, Id, Stroke};
+use eframe::egui::{
+    Button, Checkbox, Color32, ComboBox, DragValue, Label, Layout, Response, RichText, Sense,
+    Slider, SliderClamping, Ui, pos2, vec2,
+};
+use glam::DVec3;
+
+use super::badge::badge_ui;
+use super::hints;
+use crate::color::Rgb;
+use crate::scene::range::Range;
+use crate::scene::slot::Slot;
+use crate::scene::value::Names;
+use crate::session::cost::Cost;
+
+/// Width of the names.
+const NAME: f32 = 98.0;
+/// Width of a number field.
+const FIELD: f32 = 58.0;
+/// Width of the badge.
+const BADGE: f32 = 104.0;
+
+/// What a row shows besides its value.
+pub(super) struct Row<'a> {
+    /// The parameter's key.
+    pub(super) key: &'static str,
+    /// Its whole path.
+    pub(super) path: &'a str,
+    /// Names of the materials.
+    pub(super) names: &'a Names,
+    /// The saved value as TOML, if the present one differs.
+    pub(super) saved: Option<&'a str>,
+    /// What an edit costs, if it is known.
+    pub(super) cost: Option<Cost>,
+}
+
+/// What the person did in a row.
+#[derive(Debug, Default)]
+pub(super) struct RowOutcome {
+    /// The value was edited.
+    pub(super) changed: bool,
+    /// The saved value is wanted back.
+    pub(super) reset: bool,
+}
+
+/// Shows the control of one value and writes into it.
+pub(super) fn control_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> RowOutcome {
+    let mut outcome = RowOutcome::default();
+    if let Slot::Points(points, _) = slot {
+        points_ui(ui, row, points, &mut outcome);
+        return outcome;
+    }
+    ui.horizontal(|ui| {
+        name_ui(ui, row, slot, &mut outcome);
+        let width = (ui.available_width() - BADGE - ui.spacing().item_spacing.x).max(80.0);
+        let height = ui.spacing().interact_size.y;
+        let layout = Layout::left_to_right(Align::Center);
+        ui.allocate_ui_with_layout(vec2(width, height), layout, |ui| {
+            ui.set_min_width(width);
+            outcome.changed |= value_ui(ui, row, slot);
+        });
+        badge_ui(ui, row.key, row.cost, ui.available_width().min(BADGE));
+    });
+    if let Slot::Coefficient(color, range) = slot
+        && shows_channels(ui, row, color)
+    {
+        outcome.changed |= channels_ui(ui, row, color, *range);
+    }
+    outcome
+}
+
+/// The name, which takes the saved value back when it is double-clicked.
+fn name_ui(ui: &mut Ui, row: &Row<'_>, slot: &Slot<'_>, outcome: &mut RowOutcome) {
+    let height = ui.spacing().interact_size.y;
+    let layout = Layout::left_to_right(Align::Center);
+    ui.allocate_ui_with_layout(vec2(NAME, height), layout, |ui| {
+        ui.set_min_width(NAME);
+        ui.spacing_mut().item_spacing.x = 3.0;
+        if row.saved.is_some() {
+            let mark = Button::new(RichText::new("•").strong()).frame(false).small();
+            let name = format!("reset {}", row.key);
+            let mark = ui.add(mark).accessible_name(name);
+            outcome.reset |= explained(mark, row, slot.range()).clicked();
+        }
+        let label = Label::new(row.key).truncate().sense(Sense::click());
+        outcome.reset |= explained(ui.add(label), row, slot.range()).double_clicked();
+    });
+}
+
+/// The control itself; whether the value changed.
+fn value_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> bool {
+    match slot {
+        Slot::Coefficient(color, range) if hints::is_color(row.key) => {
+            color_ui(ui, row, color, *range)
+        }
+        Slot::Coefficient(color, range) => coefficient_ui(ui, row, color, *range),
+        Slot::Single(x, range) => {
+            let mut wide = f64::from(**x);
+            let changed = number_ui(ui, row, row.key, &mut wide, *range);
+            if changed {
+                **x = wide as f32;
+            }
+            changed
+        }
+        Slot::Number(x, range) if has_slider(row.key) => number_ui(ui, row, row.key, x, *range),
+        Slot::Number(x, range) => field_ui(ui, row, row.key, x, *range),
+        Slot::Whole(n, range) => {
+            let mut wide = f64::from(**n);
+            let changed = whole_ui(ui, row, &mut wide, *range);
+            if changed {
+                **n = wide as u32;
+            }
+            changed
+        }
+        Slot::Pair(pair, range) => pair_ui(ui, row, pair, *range),
+        Slot::Flag(on) => {
+            let checkbox = Checkbox::without_text(on);
+            let response = ui.add(checkbox).accessible_name(row.key);
+            explained(response, row, None).changed()
+        }
+        Slot::Vector(v, range) | Slot::Scale(v, range) => vector_ui(ui, row, row.key, v, *range),
+        Slot::Material(index) => material_ui(ui, row, index),
+        Slot::Mesh { file, .. } => {
+            let label = ui.add(Label::new(file.as_str()).truncate());
+            explained(label, row, None);
+            false
+        }
+        Slot::Points(..) => false,
+    }
+}
+
+/// Whether a geometric number has a natural span for a slider.
+fn has_slider(key: &str) -> bool {
+    matches!(key, "ior" | "fov_degrees")
+}
+
+/// A slider with a number field. Typed numbers may leave the slider's span, not the range.
+fn number_ui(ui: &mut Ui, row: &Row<'_>, name: &str, x: &mut f64, range: Range) -> bool {
+    slider_ui(ui, row, name, x, range) | field_ui(ui, row, name, x, range)
+}
+
+fn slider_ui(ui: &mut Ui, row: &Row<'_>, name: &str, x: &mut f64, range: Range) -> bool {
+    let hints::Scale { span, logarithmic } = hints::scale(row.key, range, *x);
+    let space = ui.available_width() - FIELD - ui.spacing().item_spacing.x;
+    ui.spacing_mut().slider_width = space.max(40.0);
+    let (low, high) = (*span.start(), *span.end());
+    let slider = Slider::new(x, span).show_value(false).clamping(SliderClamping::Never);
+    let slider = slider.logarithmic(logarithmic).smallest_positive(1.0).trailing_fill(true);
+    let response = ui.add(slider).accessible_name(name);
+    if !logarithmic {
+        threshold_ui(ui, &response, row.cost, low, high);
+    }
+    let changed = response.changed();
+    explained(response, row, Some(range));
+    if changed {
+        *x = range.clamp(*x);
+    }
+    changed
+}
+
+/// A tick on the slider where an edit stops being instant.
+fn threshold_ui(ui: &Ui, slider: &Response, cost: Option<Cost>, low: f64, high: f64) {
+    let (Some(Cost::InstantUpTo(x)) | Some(Cost::InstantDownTo(x))) = cost else { return };
+    if !(low..=high).contains(&x) || high <= low {
+        return;
+    }
+    let rect = slider.rect.shrink2(vec2(slider.rect.height() / 2.5, 0.0));
+    let at = rect.left() + rect.width() * ((x - low) / (high - low)) as f32;
+    let stroke = Stroke::new(1.5, Color32::from_rgb(200, 140, 30));
+    let line = [pos2(at, rect.center().y - 7.0), pos2(at, rect.center().y - 3.0)];
+    ui.painter().line_segment(line, stroke);
+}
+
+/// A number field: drag it, or click and type.
+fn field_ui(ui: &mut Ui, row: &Row<'_>, name: &str, x: &mut f64, range: Range) -> bool {
+    let speed = 0.005 * x.abs().max(0.2);
+    let before = *x;
+    let field = DragValue::new(x)
+        .speed(speed)
+        .update_while_editing(false)
+        .custom_formatter(|x, _| shown(x));
+    let response = ui.add_sized(vec2(FIELD, ui.spacing().interact_size.y), field);
+    // A field that is left without an edit keeps every bit, also those that it does not show.
+    let changed = response.changed() && shown(before) != shown(*x);
+    *x = if changed { range.clamp(*x) } else { before };
+    explained(response.accessible_name(format!("{name} value")), row, Some(range));
+    changed
+}
+
+fn whole_ui(ui: &mut Ui, row: &Row<'_>, x: &mut f64, range: Range) -> bool {
+    let mut edited = *x;
+    let changed = number_ui(ui, row, row.key, &mut edited, range);
+    edited = range.clamp(edited.round());
+    let differs = changed && edited != *x;
+    *x = edited;
+    differs
+}
+
+fn pair_ui(ui: &mut Ui, row: &Row<'_>, pair: &mut [u32; 2], range: Range) -> bool {
+    let names = if row.key == "size" { ["width", "height"] } else { ["first", "second"] };
+    let mut changed = false;
+    for (n, part) in pair.iter_mut().zip(names) {
+        let field = DragValue::new(n)
+            .range(range.low as u32..=range.high as u32)
+            .update_while_editing(false);
+        let response = ui.add(field).accessible_name(format!("{} {part}", row.key));
+        changed |= explained(response, row, Some(range)).changed();
+    }
+    changed
+}
+
+fn vector_ui(ui: &mut Ui, row: &Row<'_>, name: &str, v: &mut DVec3, range: Range) -> bool {
+    let mut changed = false;
+    for (x, axis) in [(&mut v.x, "x"), (&mut v.y, "y"), (&mut v.z, "z")] {
+        changed |= field_ui(ui, row, &format!("{name} {axis}"), x, range);
+    }
+    changed
+}
+
+/// A grey coefficient has one slider; a coloured one has three, in rows of their own.
+fn coefficient_ui(ui: &mut Ui, row: &Row<'_>, color: &mut Rgb, range: Range) -> bool {
+    let Rgb([r, g, b]) = *color;
+    if r != g || g != b {
+        let mean = (f64::from(r) + f64::from(g) + f64::from(b)) / 3.0;
+        let text = format!("r {} · g {} · b {}", shown(r.into()), shown(g.into()), shown(b.into()));
+        let grey = ui.add(Button::new(RichText::new(text).small()).small());
+        let grey = grey.accessible_name(format!("one value for {}", row.key));
+        if grey
+            .on_hover_text("Three different channels; click to give all of them their mean")
+            .clicked()
+        {
+            *color = Rgb::grey(mean as f32);
+            return true;
+        }
+        return false;
+    }
+    let id = channels_id(ui, row);
+    let mut open = ui.data(|data| data.get_temp::<bool>(id)).unwrap_or(false);
+    let mut wide = f64::from(r);
+    let button = ui.spacing().interact_size.y;
+    let changed = ui
+        .allocate_ui(vec2(ui.available_width() - button - 4.0, button), |ui| {
+            number_ui(ui, row, row.key, &mut wide, range)
+        })
+        .inner;
+    let toggle = Button::selectable(open, RichText::new("rgb").small()).small();
+    let toggle = ui.add(toggle).accessible_name(format!("channels of {}", row.key));
+    if toggle.on_hover_text("One slider for each of red, green and blue").clicked() {
+        open = !open;
+        ui.data_mut(|data| data.insert_temp(id, open));
+    }
+    if changed {
+        *color = Rgb::grey(wide as f32);
+    }
+    changed
+}
+
+fn channels_id(ui: &Ui, row: &Row<'_>) -> Id {
+    ui.make_persistent_id(("channels", row.path))
+}
+
+/// Whether the three channels have rows of their own.
+fn shows_channels(ui: &Ui, row: &Row<'_>, color: &Rgb) -> bool {
+    let Rgb([r, g, b]) = *color;
+    let opened = ui.data(|data| data.get_temp::<bool>(channels_id(ui, row)));
+    !hints::is_color(row.key) && (r != g || g != b || opened.unwrap_or(false))
+}
+
+fn channels_ui(ui: &mut Ui, row: &Row<'_>, color: &mut Rgb, range: Range) -> bool {
+    let mut changed = false;
+    for (channel, name) in color.0.iter_mut().zip(["red", "green", "blue"]) {
+        ui.horizontal(|ui| {
+            ui.add_space(NAME - 40.0);
+            let size = vec2(40.0, ui.spacing().interact_size.y);
+            ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+                ui.set_min_width(40.0);
+                ui.weak(name);
+            });
+            ui.set_max_width(ui.max_rect().width() - BADGE - ui.spacing().item_spacing.x);
+            let mut wide = f64::from(*channel);
+            if number_ui(ui, row, &format!("{} {name}", row.key), &mut wide, range) {
+                *channel = wide as f32;
+                changed = true;
+            }
+        });
+    }
+    changed
+}
+
+/// A swatch with a picker, and three numbers in linear light.
+fn color_ui(ui: &mut Ui, row: &Row<'_>, color: &mut Rgb, range: Range) -> bool {
+    let before = *color;
+    let space = ui.spacing().item_spacing.x;
+    let response = ui.color_edit_button_rgb(&mut color.0);
+    let mut changed = response.changed();
+    // The picker gives back what it was given through sRGB bytes: only a real edit counts.
+    if !changed {
+        *color = before;
+    }
+    explained(response.accessible_name(row.key), row, Some(range));
+    let width = ((ui.available_width() - 2.0 * space) / 3.0).max(30.0);
+    for (channel, name) in color.0.iter_mut().zip(["red", "green", "blue"]) {
+        let mut wide = f64::from(*channel);
+        let field = DragValue::new(&mut wide)
+            .speed(0.003)
+            .update_while_editing(false)
+            .custom_formatter(|x, _| shown(x));
+        let response = ui.add_sized(vec2(width, ui.spacing().interact_size.y), field);
+        let edited = response.changed() && shown(wide) != shown(f64::from(*channel));
+        explained(response.accessible_name(format!("{} {name}", row.key)), row, Some(range));
+        if edited {
+            *channel = range.clamp(wide) as f32;
+            changed = true;
+        }
+    }
+    changed
+}
+
+fn material_ui(ui: &mut Ui, row: &Row<'_>, index: &mut usize) -> bool {
+    let before = *index;
+    let names = row.names.list();
+    let name = |i: usize| names.get(i).map_or("?", String::as_str);
+    let combo = ComboBox::from_id_salt(row.path).selected_text(name(before));
+    let response = combo.width(ui.available_width()).show_ui(ui, |ui| {
+        for i in 0..names.len() {
+            ui.selectable_value(index, i, name(i));
+        }
+    });
+    explained(response.response.accessible_name(row.key), row, None);
+    *index != before
+}
+
+/// A polygon's corners, one row each.
+fn points_ui(ui: &mut Ui, row: &Row<'_>, points: &mut [DVec3], outcome: &mut RowOutcome) {
+    let title = format!("{} ({})", row.key, points.len());
+    let header = CollapsingHeader::new(title).id_salt(row.path);
+    let header = header.show(ui, |ui| {
+        for (i, point) in points.iter_mut().enumerate() {
+            ui.horizontal(|ui| {
+                let name = format!("{} {i}", row.key);
+                ui.label(i.to_string());
+                outcome.changed |=
+                    vector_ui(ui, row, &name, point, crate::scene::fields::COORDINATE);
+            });
+        }
+    });
+    explained(header.header_response, row, None);
+}
+
+/// A tooltip with what the parameter is for, its range, its path and its saved value.
+fn explained(response: Response, row: &Row<'_>, range: Option<Range>) -> Response {
+    response.on_hover_ui(|ui| {
+        ui.label(hints::about(row.key));
+        if let Some(range) = range {
+            ui.weak(format!("range: {range}"));
+        }
+        ui.weak(row.path);
+        if let Some(saved) = row.saved {
+            ui.weak(format!("saved: {saved}; double-click the name to take it back"));
+        }
+    })
+}
+
+/// Five significant digits at most.
+fn shown(x: f64) -> String {
+    if x == 0.0 {
+        return "0".into();
+    }
+    let digits = 4 - x.abs().log10().floor() as i32;
+    if !(0..=10).contains(&digits) {
+        return if digits < 0 && x.abs() < 1e9 { format!("{x:.0}") } else { format!("{x:.4e}") };
+    }
+    let text = format!("{x:.*}", digits as usize);
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_shown_with_five_digits() {
+        for (x, text) in [
+            (0.0, "0"),
+            (0.7, "0.7"),
+            (f64::from(0.7f32), "0.7"),
+            (-5.25, "-5.25"),
+            (1.0 / 3.0, "0.33333"),
+            (123_456.7, "123457"),
+            (1000.0, "1000"),
+            (1.0 / 255.0, "0.0039216"),
+            (1e-9, "1.0000e-9"),
+            (1e12, "1.0000e12"),
+        ] {
+            assert_eq!(shown(x), text);
+        }
+    }
+}

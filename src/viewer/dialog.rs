@@ -1,0 +1,197 @@
+//! Asking for a file: the system's dialog, and the program's own path field where there is none.
+
+use std::path::{Path, PathBuf};
+use std::pin::Pin;
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::time::{Duration, Instant};
+
+use eframe::egui;
+
+/// What a file is wanted for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// A scene to open.
+    Open,
+    /// A scene file to write.
+    Save,
+    /// A picture file to write.
+    Export,
+    /// A mesh that was not found.
+    Locate,
+}
+
+impl Purpose {
+    /// Title of the dialog.
+    pub fn title(self) -> &'static str {
+        match self {
+            Purpose::Open => "Open a scene",
+            Purpose::Save => "Save the scene",
+            Purpose::Export => "Export the picture",
+            Purpose::Locate => "Find the mesh",
+        }
+    }
+
+    /// Whether the file is written rather than read.
+    pub fn writes(self) -> bool {
+        matches!(self, Purpose::Save | Purpose::Export)
+    }
+
+    /// What the files are called and how their names end.
+    pub fn filter(self) -> (&'static str, &'static [&'static str]) {
+        match self {
+            Purpose::Open | Purpose::Save => ("Rayforest scenes", &["toml"]),
+            Purpose::Export => ("Pictures", &["png", "exr"]),
+            Purpose::Locate => ("Meshes", &["obj"]),
+        }
+    }
+}
+
+/// A question for a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Question {
+    /// What for.
+    pub purpose: Purpose,
+    /// Where to begin.
+    pub folder: PathBuf,
+    /// A name to begin with, for files that are written.
+    pub name: String,
+}
+
+/// What came of a question.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Answer {
+    /// Not yet decided.
+    Waiting,
+    /// This file.
+    File(PathBuf),
+    /// The person does not want to.
+    Cancelled,
+    /// Nobody can be asked: the path field is shown.
+    NoService,
+}
+
+/// Asks for files without holding up the window. One question at a time.
+pub trait Dialogs {
+    /// Asks.
+    fn ask(&mut self, question: &Question, ctx: &egui::Context);
+
+    /// What came of it so far. `focused` says whether the window has the keyboard: a dialog that
+    /// shows takes it away.
+    fn answer(&mut self, focused: bool) -> Answer;
+}
+
+/// An answer faster than this is nobody's: there is no service.
+const INSTANT: Duration = Duration::from_millis(300);
+/// After this time without an answer and without a lost focus there is no service.
+const PATIENCE: Duration = Duration::from_secs(4);
+
+/// The dialogs of the system.
+#[derive(Default)]
+pub struct SystemDialogs {
+    asked: Option<(Instant, Receiver<Option<PathBuf>>)>,
+    /// The window lost the keyboard since the question: some dialog shows.
+    seen: bool,
+}
+
+impl Dialogs for SystemDialogs {
+    fn ask(&mut self, question: &Question, ctx: &egui::Context) {
+        let (send, receive) = channel();
+        let dialog = dialog(question);
+        let ctx = ctx.clone();
+        // The dialog is made here, as some systems want it, and waited for elsewhere.
+        let future: Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> =
+            if question.purpose.writes() {
+                Box::pin(dialog.save_file())
+            } else {
+                Box::pin(dialog.pick_file())
+            };
+        std::thread::spawn(move || {
+            let file = pollster::block_on(future).map(|handle| handle.path().to_owned());
+            // A window that is closed meanwhile has no use for the answer.
+            let _ = send.send(file);
+            ctx.request_repaint();
+        });
+        (self.asked, self.seen) = (Some((Instant::now(), receive)), false);
+    }
+
+    fn answer(&mut self, focused: bool) -> Answer {
+        let Some((start, receive)) = &self.asked else { return Answer::Cancelled };
+        self.seen |= !focused;
+        let answer = match receive.try_recv() {
+            Ok(Some(file)) => Answer::File(file),
+            Ok(None) if start.elapsed() < INSTANT => Answer::NoService,
+            Ok(None) => Answer::Cancelled,
+            Err(TryRecvError::Disconnected) => Answer::NoService,
+            Err(TryRecvError::Empty) if !self.seen && start.elapsed() > PATIENCE => {
+                Answer::NoService
+            }
+            Err(TryRecvError::Empty) => return Answer::Waiting,
+        };
+        self.asked = None;
+        answer
+    }
+}
+
+fn dialog(question: &Question) -> rfd::AsyncFileDialog {
+    let (kind, endings) = question.purpose.filter();
+    let dialog = rfd::AsyncFileDialog::new()
+        .set_title(question.purpose.title())
+        .add_filter(kind, endings)
+        .set_directory(&question.folder);
+    if question.name.is_empty() { dialog } else { dialog.set_file_name(&question.name) }
+}
+
+/// Dialogs that give prepared answers, for tests.
+#[derive(Default)]
+pub struct ScriptedDialogs {
+    /// The answers to come, the next one last.
+    pub answers: Vec<Answer>,
+}
+
+impl Dialogs for ScriptedDialogs {
+    fn ask(&mut self, _: &Question, _: &egui::Context) {}
+
+    fn answer(&mut self, _: bool) -> Answer {
+        self.answers.pop().unwrap_or(Answer::Cancelled)
+    }
+}
+
+/// `path` with the ending that the purpose asks for, if it has none.
+pub(super) fn with_ending(path: &Path, purpose: Purpose) -> PathBuf {
+    let (_, endings) = purpose.filter();
+    match path.extension() {
+        None => path.with_extension(endings[0]),
+        Some(_) => path.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_without_ending_gets_the_usual_one() {
+        assert_eq!(with_ending(Path::new("a/b"), Purpose::Save), Path::new("a/b.toml"));
+        assert_eq!(with_ending(Path::new("b.exr"), Purpose::Export), Path::new("b.exr"));
+    }
+
+    #[test]
+    fn silence_and_haste_mean_that_nobody_can_be_asked() {
+        let (send, receive) = channel();
+        let mut dialogs = SystemDialogs { asked: Some((Instant::now(), receive)), seen: false };
+        assert_eq!(dialogs.answer(true), Answer::Waiting);
+        send.send(None).unwrap();
+        assert_eq!(dialogs.answer(true), Answer::NoService);
+        let long_ago = Instant::now() - PATIENCE - INSTANT;
+        let (_silent, receive) = channel();
+        dialogs = SystemDialogs { asked: Some((long_ago, receive)), seen: false };
+        assert_eq!(dialogs.answer(true), Answer::NoService);
+        let (send, receive) = channel();
+        dialogs = SystemDialogs { asked: Some((long_ago, receive)), seen: false };
+        // A window that lost the keyboard shows its dialog: it may take all the time it wants.
+        assert_eq!(dialogs.answer(false), Answer::Waiting);
+        assert_eq!(dialogs.answer(true), Answer::Waiting);
+        send.send(None).unwrap();
+        assert_eq!(dialogs.answer(true), Answer::Cancelled);
+    }
+}

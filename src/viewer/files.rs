@@ -1,0 +1,347 @@
+//! Opening, saving, exporting, leaving: questions first, slow work in threads, answers as they come.
+
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::{Duration, Instant};
+
+use eframe::egui::{Context, ViewportCommand};
+
+use super::Folders;
+use super::app::App;
+use super::command::Command;
+use super::dialog::{Answer, Dialogs, Purpose, Question, with_ending};
+use super::export::ExportForm;
+use super::inspector::Selection;
+use super::path_field::PathField;
+use crate::document::recovery::Found;
+use crate::document::{Document, DocumentError, Save, TEMPLATES};
+use crate::session::live::Export;
+
+/// Unsaved work is kept after this much rest.
+const REST: Duration = Duration::from_secs(1);
+
+/// What is to be done once unsaved work is out of the way.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Next {
+    /// Starts from a template.
+    New(usize),
+    /// Asks for a file and opens it.
+    Ask,
+    /// Opens a file.
+    Open(PathBuf),
+    /// Closes the window.
+    Quit,
+}
+
+/// What a file is asked for.
+#[derive(Clone, Debug)]
+pub(super) enum For {
+    /// To open it.
+    Open,
+    /// To save to it, and then to go on.
+    Save(Option<Next>),
+    /// To write a picture to it.
+    Export(ExportForm),
+    /// To use it in place of a mesh that a scene misses.
+    Locate { scene: PathBuf, missing: String },
+}
+
+/// What waits for the person, over the window.
+pub(super) enum Modal {
+    /// Unsaved work, and what comes after it.
+    Unsaved(Next),
+    /// What to export.
+    Export(ExportForm),
+    /// A file, typed.
+    Path(PathField, For),
+    /// A scene that could not be opened; the second part names a mesh that may be located.
+    BadScene { path: PathBuf, message: String, missing: Option<String> },
+    /// Work of a run that ended without saving it.
+    Recover(Vec<Found>),
+}
+
+/// What threads have done.
+enum Done {
+    Opened { path: PathBuf, result: Box<Result<Document, DocumentError>> },
+    Saved { save: Save, result: Result<(), DocumentError>, next: Option<Next> },
+    Kept(Result<(), DocumentError>),
+}
+
+/// Files, dialogs and threads of the window.
+pub(super) struct Files {
+    folders: Folders,
+    dialogs: Box<dyn Dialogs>,
+    /// What the dialog that shows is for.
+    asking: Option<(Question, For)>,
+    pub(super) modal: Option<Modal>,
+    send: Sender<Done>,
+    receive: Receiver<Done>,
+    /// The latest edit that is not kept yet.
+    touched: Option<Instant>,
+    /// The window may close without a question.
+    leaving: bool,
+}
+
+impl Files {
+    pub(super) fn new(folders: Folders, dialogs: Box<dyn Dialogs>) -> Files {
+        let (send, receive) = channel();
+        Files {
+            folders,
+            dialogs,
+            asking: None,
+            modal: None,
+            send,
+            receive,
+            touched: None,
+            leaving: false,
+        }
+    }
+
+    /// Offers what was found, if anything was.
+    pub(super) fn offer_recovery(&mut self, found: Vec<Found>) {
+        if !found.is_empty() {
+            self.modal = Some(Modal::Recover(found));
+        }
+    }
+
+    /// Whether keys belong to a question and not to the window.
+    pub(super) fn is_modal(&self) -> bool {
+        self.modal.is_some() || self.asking.is_some()
+    }
+
+    /// The document was edited.
+    pub(super) fn touched(&mut self) {
+        self.touched = Some(Instant::now());
+    }
+
+    /// Does slow work in a thread; the window hears of it.
+    fn work(&self, ctx: &Context, job: impl FnOnce() -> Done + Send + 'static) {
+        let (send, ctx) = (self.send.clone(), ctx.clone());
+        std::thread::spawn(move || {
+            // A window that is closed meanwhile has no use for the result.
+            let _ = send.send(job());
+            ctx.request_repaint();
+        });
+    }
+}
+
+impl App {
+    /// Reads a scene file in a thread.
+    pub(super) fn open_in_background(&mut self, ctx: &Context, path: PathBuf) {
+        self.files.work(ctx, move || {
+            let result = Box::new(Document::open(&path));
+            Done::Opened { path, result }
+        });
+    }
+
+    pub(super) fn run_file_command(&mut self, ctx: &Context, command: Command) {
+        match command {
+            Command::New(template) => self.after_unsaved(ctx, Next::New(template)),
+            Command::Open => self.after_unsaved(ctx, Next::Ask),
+            Command::OpenRecent(i) => {
+                if let Some(path) = self.settings.recent.get(i).cloned() {
+                    self.after_unsaved(ctx, Next::Open(path));
+                }
+            }
+            Command::Save => self.save(ctx, None),
+            Command::SaveAs => self.ask_save(ctx, None),
+            Command::Export => {
+                let form = ExportForm::new(self.document.scene().picture.size);
+                self.files.modal = Some(Modal::Export(form));
+            }
+            _ => {}
+        }
+    }
+
+    /// Goes on, after asking about unsaved work if there is any.
+    fn after_unsaved(&mut self, ctx: &Context, next: Next) {
+        self.document.end_gesture();
+        if self.document.is_unsaved() {
+            self.files.modal = Some(Modal::Unsaved(next));
+        } else {
+            self.go_on(ctx, next);
+        }
+    }
+
+    /// Goes on without a question.
+    pub(super) fn go_on(&mut self, ctx: &Context, next: Next) {
+        match next {
+            Next::New(template) => {
+                let (name, text) = TEMPLATES[template];
+                match Document::untitled(name, text) {
+                    Ok(document) => self.replace_document(document),
+                    Err(error) => self.notices.error(error.message),
+                }
+            }
+            Next::Ask => self.ask(ctx, Purpose::Open, String::new(), For::Open),
+            Next::Open(path) => self.open_in_background(ctx, path),
+            Next::Quit => {
+                self.files.leaving = true;
+                ctx.send_viewport_cmd(ViewportCommand::Close);
+            }
+        }
+    }
+
+    fn replace_document(&mut self, document: Document) {
+        self.document = document;
+        self.selection = Selection::Scene;
+        self.show_scene();
+    }
+
+    /// Saves to the document's file, or asks for one.
+    pub(super) fn save(&mut self, ctx: &Context, next: Option<Next>) {
+        match self.document.path().map(Path::to_owned) {
+            Some(path) => self.save_to(ctx, &path, next),
+            None => self.ask_save(ctx, next),
+        }
+    }
+
+    fn ask_save(&mut self, ctx: &Context, next: Option<Next>) {
+        let name = format!("{}.toml", self.document.title().trim_end_matches(".toml"));
+        self.ask(ctx, Purpose::Save, name, For::Save(next));
+    }
+
+    fn save_to(&mut self, ctx: &Context, path: &Path, next: Option<Next>) {
+        self.document.end_gesture();
+        match self.document.save(path) {
+            Ok(save) => self.files.work(ctx, move || {
+                let result = save.write();
+                Done::Saved { save, result, next }
+            }),
+            Err(error) => self.notices.error(error.message),
+        }
+    }
+
+    /// Asks for a file by the system's dialog.
+    pub(super) fn ask(&mut self, ctx: &Context, purpose: Purpose, name: String, what: For) {
+        let folder = self.document.path().and_then(Path::parent).map(Path::to_owned);
+        let folder = folder.filter(|f| !f.as_os_str().is_empty());
+        let folder = folder.or_else(|| std::env::current_dir().ok()).unwrap_or_default();
+        let question = Question { purpose, folder, name };
+        self.files.dialogs.ask(&question, ctx);
+        self.files.asking = Some((question, what));
+    }
+
+    /// A file was chosen.
+    pub(super) fn chosen(&mut self, ctx: &Context, file: PathBuf, what: For) {
+        match what {
+            For::Open => self.open_in_background(ctx, file),
+            For::Save(next) => self.save_to(ctx, &with_ending(&file, Purpose::Save), next),
+            For::Export(form) => {
+                let path = with_ending(&file, Purpose::Export);
+                match form.format_for(&path) {
+                    Ok(format) => self.live.export(Export { path, format, size: form.size }),
+                    Err(message) => self.notices.error(message),
+                }
+            }
+            For::Locate { scene, missing } => self.files.work(ctx, move || {
+                let result = Box::new(Document::open_with(&scene, &missing, &file));
+                Done::Opened { path: scene, result }
+            }),
+        }
+    }
+
+    /// Takes what dialogs and threads have brought, dropped files, and the wish to close.
+    pub(super) fn receive_files(&mut self, ctx: &Context) {
+        self.receive_answer(ctx);
+        while let Ok(done) = self.files.receive.try_recv() {
+            self.receive_done(ctx, done);
+        }
+        let dropped =
+            ctx.input(|i| i.raw.dropped_files.iter().find_map(|f| f.path().map(Path::to_owned)));
+        if let Some(path) = dropped {
+            self.after_unsaved(ctx, Next::Open(path));
+        }
+        let close = ctx.input(|i| i.viewport().close_requested());
+        if close && !self.files.leaving && self.document.is_unsaved() {
+            ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.files.modal = Some(Modal::Unsaved(Next::Quit));
+        }
+    }
+
+    fn receive_answer(&mut self, ctx: &Context) {
+        let Some((question, what)) = self.files.asking.take() else { return };
+        let focused = ctx.input(|i| i.focused);
+        match self.files.dialogs.answer(focused) {
+            Answer::Waiting => {
+                self.files.asking = Some((question, what));
+                ctx.request_repaint_after(Duration::from_millis(100));
+            }
+            Answer::File(file) => self.chosen(ctx, file, what),
+            Answer::Cancelled => {}
+            Answer::NoService => {
+                self.files.modal = Some(Modal::Path(PathField::new(question, ctx), what));
+            }
+        }
+    }
+
+    fn receive_done(&mut self, ctx: &Context, done: Done) {
+        match done {
+            Done::Opened { path, result } => match *result {
+                Ok(document) => {
+                    self.replace_document(document);
+                    self.remember_file(&path);
+                }
+                Err(DocumentError { message, missing }) => {
+                    self.files.modal = Some(Modal::BadScene { path, message, missing });
+                }
+            },
+            Done::Saved { save, result: Ok(()), next } => {
+                self.notices.say(format!("saved {}", save.path.display()));
+                self.remember_file(&save.path.clone());
+                self.document.saved(save);
+                if let Some(next) = next {
+                    self.go_on(ctx, next);
+                }
+            }
+            Done::Saved { result: Err(error), .. } => self.notices.error(error.message),
+            Done::Kept(Ok(())) => {}
+            Done::Kept(Err(error)) => {
+                self.notices.error(format!("unsaved work is not kept: {}", error.message));
+            }
+        }
+    }
+
+    fn remember_file(&mut self, path: &Path) {
+        self.settings.remember(path);
+        self.remember_settings();
+    }
+
+    /// Writes the settings; small, and at most once per click.
+    pub(super) fn remember_settings(&mut self) {
+        if let Err(message) = self.settings.write(&self.files.folders.settings_file()) {
+            self.notices.error(message);
+        }
+    }
+
+    /// Keeps unsaved work after a moment's rest, and forgets it once it is saved.
+    pub(super) fn autosave(&mut self, ctx: &Context) {
+        let (Some(touched), Some(recovery)) = (self.files.touched, &self.recovery) else { return };
+        if let Some(rest) = REST.checked_sub(touched.elapsed()) {
+            ctx.request_repaint_after(rest);
+            return;
+        }
+        self.files.touched = None;
+        if self.document.is_unsaved() {
+            let snapshot = recovery.snapshot(&self.document);
+            self.files.work(ctx, move || Done::Kept(snapshot.write()));
+        } else {
+            recovery.clear();
+        }
+    }
+
+    /// The window closes: nothing unsaved is left that the person did not give up.
+    pub(super) fn leave(&mut self) {
+        if let Some(recovery) = &self.recovery {
+            recovery.clear();
+        }
+    }
+
+    /// Opens recovered work.
+    pub(super) fn recover(&mut self, found: &Found) {
+        match found.open() {
+            Ok(document) => self.replace_document(document),
+            Err(error) => self.notices.error(error.message),
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! What every parameter means, in one sentence, and the part of its range that a slider covers.
+
+use std::ops::RangeInclusive;
+
+use crate::scene::range::Range;
+
+/// What the parameter with this key is for, with its unit.
+pub(super) fn about(key: &str) -> &'static str {
+    match key {
+        "ambient_light" => "Light that reaches every surface from everywhere, times its ambient",
+        "eye" => "Where the eye is, in units of the scene",
+        "target" => "The point in the middle of the picture",
+        "up" => "Which way is up in the picture",
+        "fov_degrees" => "Vertical angle of view, in degrees",
+        "height" => "Height of the view of a parallel camera, in units of the scene",
+        "size" => "Width and height in pixels; of a checker: side of a cube, in units of the scene",
+        "exposure" => "Brightness of the picture in stops: +1 doubles it",
+        "samples" => "Camera rays per pixel: more give smoother edges",
+        "depth" => "Longest chain of reflections and refractions that is followed",
+        "cutoff" => "Branches that weigh less than this are not followed",
+        "color" => "Colour, linear Rec. 709",
+        "point" => "Where the light is",
+        "direction" => "The direction in which the light shines",
+        "intensity" => "Strength of the light: a surface that faces it shows diffuse times this",
+        "on" => "Whether the light shines",
+        "kloc" => {
+            "Weight of all light of the surface itself against what it reflects and transmits"
+        }
+        "ambient" => "Share of the ambient light that the surface shows",
+        "diffuse" => "Matte light: the surface's colour under each light (Lambert)",
+        "specular" => "Strength of the highlights (Phong)",
+        "shininess" => "Phong's exponent: higher makes highlights smaller",
+        "metallic" => "0: white highlights; 1: highlights in the colour of the surface",
+        "emission" => "Light that the surface gives off by itself",
+        "reflect" => "Share of the mirror image",
+        "transmit" => "Share of what is seen through the surface",
+        "filter" => "Colour that light takes on at every surface that it passes",
+        "ior" => "Index of refraction: air 1, water 1.33, glass 1.5, diamond 2.42",
+        "a" => "Colour of the first kind of squares",
+        "b" => "Colour of the second kind of squares",
+        "material" => "The material of the solid",
+        "center" => "Centre, in the solid's own coordinates",
+        "radius" => "Radius",
+        "normal" => "Points out of the solid; its length does not matter",
+        "offset" => "Distance of the plane from the origin along its normal",
+        "min" => "Lowest corner",
+        "max" => "Highest corner",
+        "points" => "Corners in order",
+        "turns" => "Turns around the axis and through the hole: no common divisor",
+        "tube" => "Radius of the tube; the knot's own radius is 1",
+        "segments" => "Segments along and around the tube",
+        "levels" => "Generations of spheres",
+        "rotate_degrees" => "Turns about x, then y, then z, in degrees",
+        "translate" => "Moves the solid, after scale and turn",
+        "scale" => "Makes the solid larger or smaller, first of all",
+        "file" => "The mesh file; it can be changed in the scene file",
+        _ => "",
+    }
+}
+
+/// Whether a triple of numbers is looked at as a colour rather than as three strengths.
+pub(super) fn is_color(key: &str) -> bool {
+    matches!(key, "color" | "a" | "b" | "filter" | "emission" | "ambient_light")
+}
+
+/// How a slider shows a number.
+pub(super) struct Scale {
+    /// What the slider covers; typed values may lie outside, within the parameter's own range.
+    pub(super) span: RangeInclusive<f64>,
+    /// Whether equal ways are equal factors.
+    pub(super) logarithmic: bool,
+}
+
+/// The slider for a parameter, wide enough for its present value.
+pub(super) fn scale(key: &str, range: Range, value: f64) -> Scale {
+    let (low, high, logarithmic) = match key {
+        "shininess" => (0.0, 1000.0, true),
+        "ior" => (1.0, 2.5, false),
+        "exposure" => (-5.0, 5.0, false),
+        "intensity" => (0.0, 2.0, false),
+        "samples" => (1.0, 64.0, true),
+        "depth" => (0.0, 20.0, false),
+        "cutoff" => (0.0, 0.1, false),
+        "fov_degrees" => (5.0, 120.0, false),
+        "levels" => (1.0, 6.0, false),
+        _ => (range.low.max(0.0), range.high.min(1.0), false),
+    };
+    Scale { span: low.min(value)..=high.max(value), logarithmic }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::fields::{LENSES, PLACES, SHAPES};
+    use crate::scene::path::parameters;
+    use crate::scene::{Lens, Light, LightPlace, Material, Paint, Scene, Shape, Solid};
+
+    #[test]
+    fn every_parameter_is_explained() {
+        let mut scene = Scene::default();
+        for (i, key) in PLACES.iter().enumerate() {
+            let name = format!("l{i}");
+            scene.lights.push(Light { place: LightPlace::named(key), ..Light::new(&name) });
+        }
+        scene.materials.push(Material::new("plain"));
+        scene.materials.push(Material { paint: Paint::named("texture"), ..Material::new("tex") });
+        for key in SHAPES {
+            scene.solids.push(Solid::new(key, Shape::named(key), 0));
+        }
+        for lens in LENSES {
+            scene.camera.lens = Lens::named(lens);
+            for parameter in parameters(&scene) {
+                let key = parameter.path.rsplit('.').next().unwrap();
+                assert!(!about(key).is_empty(), "{}", parameter.path);
+            }
+        }
+        assert_eq!(about("no such key"), "");
+    }
+
+    #[test]
+    fn a_slider_covers_the_present_value() {
+        let range = Range::closed(0.0, 1e6);
+        assert_eq!(scale("diffuse", range, 0.5).span, 0.0..=1.0);
+        assert_eq!(scale("diffuse", range, 7.5).span, 0.0..=7.5);
+        assert_eq!(scale("exposure", Range::closed(-30.0, 30.0), -9.0).span, -9.0..=5.0);
+        assert!(scale("shininess", range, 10.0).logarithmic);
+    }
+}

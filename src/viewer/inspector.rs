@@ -1,0 +1,242 @@
+//! The parameters of what is selected, each with a control, its cost, and a mark if it was changed.
+
+use std::collections::{BTreeMap, HashMap};
+
+use eframe::egui::{RichText, ScrollArea, Ui};
+
+use super::control::{Row, control_ui};
+use crate::scene::Scene;
+use crate::scene::fields::{self, Need, Visit};
+use crate::scene::slot::Slot;
+use crate::scene::value::Names;
+use crate::session::cost::Cost;
+
+/// What the inspector shows. Indices are valid for the scene beside which it is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Selection {
+    /// Camera, picture, trace, ambient light and background.
+    Scene,
+    /// The light with this index.
+    Light(usize),
+    /// The material with this index.
+    Material(usize),
+    /// The solid with this index.
+    Solid(usize),
+}
+
+impl Selection {
+    /// The same selection, or the whole scene if there is no such thing in it.
+    pub(super) fn within(self, scene: &Scene) -> Selection {
+        let exists = match self {
+            Selection::Scene => true,
+            Selection::Light(i) => i < scene.lights.len(),
+            Selection::Material(i) => i < scene.materials.len(),
+            Selection::Solid(i) => i < scene.solids.len(),
+        };
+        if exists { self } else { Selection::Scene }
+    }
+
+    /// What is selected, with its name.
+    fn title(self, scene: &Scene) -> String {
+        match self {
+            Selection::Scene => "Scene".into(),
+            Selection::Light(i) => format!("Light {}", scene.lights[i].name),
+            Selection::Material(i) => format!("Material {}", scene.materials[i].name),
+            Selection::Solid(i) => format!("Solid {}", scene.solids[i].name),
+        }
+    }
+}
+
+/// Visits what is selected, with the whole path of every key.
+pub(super) fn visit(scene: &mut Scene, selection: Selection, v: &mut dyn Visit) {
+    let optional = Need::Optional;
+    match selection {
+        Selection::Scene => {
+            let Scene { ambient_light, picture, camera, background, trace, .. } = scene;
+            v.group("picture", optional, &mut |v| fields::picture(picture, v));
+            v.group("camera", optional, &mut |v| fields::camera(camera, v));
+            v.group("trace", optional, &mut |v| fields::trace(trace, v));
+            v.group("background", optional, &mut |v| fields::background(background, v));
+            let ambient = Slot::Coefficient(ambient_light, fields::COEFFICIENT);
+            v.leaf("ambient_light", optional, ambient);
+        }
+        Selection::Light(i) => {
+            let light = &mut scene.lights[i];
+            v.group("lights", optional, &mut |v| {
+                v.group(&light.name.clone(), optional, &mut |v| fields::light(light, v));
+            });
+        }
+        Selection::Material(i) => {
+            let material = &mut scene.materials[i];
+            v.group("materials", optional, &mut |v| {
+                v.group(&material.name.clone(), optional, &mut |v| fields::material(material, v));
+            });
+        }
+        Selection::Solid(i) => {
+            let solid = &mut scene.solids[i];
+            v.group("solids", optional, &mut |v| {
+                v.group(&solid.name.clone(), optional, &mut |v| fields::solid(solid, v));
+            });
+        }
+    }
+}
+
+/// The paths of all parameters of a selection.
+pub(super) fn paths(scene: &Scene, selection: Selection) -> Vec<String> {
+    texts(scene, selection).into_iter().map(|(path, _)| path).collect()
+}
+
+/// Path and value as TOML of every parameter of a selection.
+fn texts(scene: &Scene, selection: Selection) -> Vec<(String, String)> {
+    let mut scene = scene.clone();
+    let names = Names::of(&scene.materials);
+    let mut texts = Texts { prefix: String::new(), names: &names, list: Vec::new() };
+    visit(&mut scene, selection, &mut texts);
+    texts.list
+}
+
+struct Texts<'a> {
+    prefix: String,
+    names: &'a Names,
+    list: Vec<(String, String)>,
+}
+
+impl Visit for Texts<'_> {
+    fn leaf(&mut self, key: &'static str, _: Need, slot: Slot<'_>) {
+        self.list.push((crate::scene::path::join(&self.prefix, key), slot.text(self.names)));
+    }
+
+    fn group(&mut self, key: &str, _: Need, body: &mut dyn FnMut(&mut dyn Visit)) {
+        let inner = crate::scene::path::join(&self.prefix, key);
+        let outer = std::mem::replace(&mut self.prefix, inner);
+        body(self);
+        self.prefix = outer;
+    }
+}
+
+/// What the inspector reads besides the scene.
+pub(super) struct Known<'a> {
+    /// The scene as opened or saved: what "changed" and "reset" refer to.
+    pub(super) saved: &'a Scene,
+    /// Costs by path.
+    pub(super) costs: &'a BTreeMap<String, Cost>,
+}
+
+/// What the person did in the inspector.
+#[derive(Debug, Default)]
+pub(super) struct Outcome {
+    /// Whether the scene was edited.
+    pub(super) changed: bool,
+    /// Parameters to be set to a value, as paths and TOML: resets.
+    pub(super) assignments: Vec<(String, String)>,
+    /// Another selection.
+    pub(super) select: Option<Selection>,
+}
+
+/// Shows the controls of a selection, which write into `scene`.
+pub(super) fn inspector_ui(
+    ui: &mut Ui,
+    scene: &mut Scene,
+    selection: Selection,
+    known: &Known<'_>,
+) -> Outcome {
+    let mut outcome = Outcome::default();
+    ui.add_space(4.0);
+    ui.heading(selection.title(scene));
+    links_ui(ui, scene, selection, &mut outcome);
+    ui.separator();
+    let names = Names::of(&scene.materials);
+    let saved = texts(known.saved, same_name(scene, known.saved, selection));
+    ScrollArea::vertical().auto_shrink(false).id_salt(selection).show(ui, |ui| {
+        let mut controls = Controls {
+            ui,
+            prefix: String::new(),
+            depth: 0,
+            names: &names,
+            saved: saved.into_iter().collect(),
+            known,
+            outcome: &mut outcome,
+        };
+        visit(scene, selection, &mut controls);
+    });
+    outcome
+}
+
+/// Ways from what is selected to what belongs to it.
+fn links_ui(ui: &mut Ui, scene: &Scene, selection: Selection, outcome: &mut Outcome) {
+    let Selection::Solid(i) = selection else { return };
+    let material = scene.solids[i].material;
+    let name = &scene.materials[material].name;
+    let link = ui.link(format!("Material {name}")).on_hover_text("Shows this material");
+    if link.clicked() {
+        outcome.select = Some(Selection::Material(material));
+    }
+}
+
+/// The thing of the same name in another scene; the whole scene if there is none.
+fn same_name(scene: &Scene, other: &Scene, selection: Selection) -> Selection {
+    let found = match selection {
+        Selection::Scene => Some(Selection::Scene),
+        Selection::Light(i) => {
+            let name = &scene.lights[i].name;
+            other.lights.iter().position(|l| l.name == *name).map(Selection::Light)
+        }
+        Selection::Material(i) => {
+            let name = &scene.materials[i].name;
+            other.materials.iter().position(|m| m.name == *name).map(Selection::Material)
+        }
+        Selection::Solid(i) => {
+            let name = &scene.solids[i].name;
+            other.solids.iter().position(|s| s.name == *name).map(Selection::Solid)
+        }
+    };
+    found.unwrap_or(Selection::Scene)
+}
+
+/// Makes a control of every value that it visits.
+struct Controls<'a, 'u> {
+    ui: &'u mut Ui,
+    prefix: String,
+    depth: usize,
+    names: &'a Names,
+    saved: HashMap<String, String>,
+    known: &'a Known<'a>,
+    outcome: &'a mut Outcome,
+}
+
+impl Visit for Controls<'_, '_> {
+    fn leaf(&mut self, key: &'static str, _: Need, mut slot: Slot<'_>) {
+        let path = crate::scene::path::join(&self.prefix, key);
+        let saved = self.saved.get(&path).map(String::as_str);
+        let row = Row {
+            key,
+            path: &path,
+            names: self.names,
+            saved: saved.filter(|s| *s != slot.text(self.names)),
+            cost: self.known.costs.get(&path).copied(),
+        };
+        let outcome = control_ui(self.ui, &row, &mut slot);
+        self.outcome.changed |= outcome.changed;
+        if outcome.reset
+            && let Some(value) = row.saved
+        {
+            self.outcome.assignments.push((path.clone(), value.to_owned()));
+        }
+    }
+
+    fn group(&mut self, key: &str, _: Need, body: &mut dyn FnMut(&mut dyn Visit)) {
+        let inner = crate::scene::path::join(&self.prefix, key);
+        let outer = std::mem::replace(&mut self.prefix, inner);
+        // `materials` and the material's name are the heading already.
+        let section = !fields::LISTS.contains(&outer.split('.').next().unwrap_or_default())
+            && !fields::LISTS.contains(&key);
+        if section || self.depth >= 2 {
+            self.ui.add_space(6.0);
+            self.ui.label(RichText::new(key).strong());
+        }
+        self.depth += 1;
+        body(self);
+        self.depth -= 1;
+        self.prefix = outer;
+    }
+}

@@ -1,0 +1,145 @@
+//! The menu bar.
+
+use eframe::egui::{Button, MenuBar, Ui};
+
+use super::command::Command;
+use crate::document::settings::{Settings, Theme};
+use crate::document::{Document, TEMPLATES};
+
+/// What the menu needs to know.
+pub(super) struct MenuState<'a> {
+    /// For the names of undo and redo.
+    pub(super) document: &'a Document,
+    /// Whether drags move the camera.
+    pub(super) camera_tool: bool,
+}
+
+/// Shows the menu bar and its buttons; gives the command that was chosen. Theme and zoom are set at
+/// once.
+pub(super) fn menu_ui(
+    ui: &mut Ui,
+    state: &MenuState<'_>,
+    settings: &mut Settings,
+) -> Option<Command> {
+    let mut chosen = None;
+    MenuBar::new().ui(ui, |ui| {
+        ui.menu_button("File", |ui| file_menu(ui, settings, &mut chosen))
+            .response
+            .on_hover_text("Open, save, export");
+        ui.menu_button("Edit", |ui| edit_menu(ui, state, &mut chosen))
+            .response
+            .on_hover_text("Undo and redo");
+        ui.menu_button("View", |ui| view_menu(ui, settings, &mut chosen))
+            .response
+            .on_hover_text("Size of the picture, colours of the window");
+        ui.separator();
+        for (command, name) in [(Command::Undo, "Undo"), (Command::Redo, "Redo")] {
+            let step = step(state.document, command);
+            let button = ui.add_enabled(step.is_some(), Button::new(name));
+            let about = step.map_or_else(|| command.about().to_owned(), |s| format!("{name}: {s}"));
+            if button.on_hover_text(&about).on_disabled_hover_text(&about).clicked() {
+                chosen = Some(command);
+            }
+        }
+        ui.separator();
+        for command in [Command::Fit, Command::ActualSize] {
+            if ui.button(command.name()).on_hover_text(command.about()).clicked() {
+                chosen = Some(command);
+            }
+        }
+        let camera = Button::selectable(state.camera_tool, Command::CameraTool.name());
+        if ui.add(camera).on_hover_text(Command::CameraTool.about()).clicked() {
+            chosen = Some(Command::CameraTool);
+        }
+    });
+    chosen
+}
+
+/// What undo or redo would do.
+fn step(document: &Document, command: Command) -> Option<&str> {
+    if command == Command::Undo { document.undo_name() } else { document.redo_name() }
+}
+
+fn file_menu(ui: &mut Ui, settings: &Settings, chosen: &mut Option<Command>) {
+    ui.menu_button("New", |ui| {
+        for (i, (name, _)) in TEMPLATES.iter().enumerate() {
+            if ui.button(*name).on_hover_text(Command::New(i).about()).clicked() {
+                *chosen = Some(Command::New(i));
+            }
+        }
+    })
+    .response
+    .on_hover_text("Starts a scene from a template");
+    item(ui, Command::Open, chosen);
+    let recent = &settings.recent;
+    ui.add_enabled_ui(!recent.is_empty(), |ui| {
+        ui.menu_button("Open recent", |ui| {
+            for (i, path) in recent.iter().enumerate() {
+                let name = path.file_name().map_or_else(
+                    || path.display().to_string(),
+                    |name| name.to_string_lossy().into_owned(),
+                );
+                if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+                    *chosen = Some(Command::OpenRecent(i));
+                }
+            }
+        })
+        .response
+        .on_hover_text("Files opened or saved before")
+    });
+    ui.separator();
+    item(ui, Command::Save, chosen);
+    item(ui, Command::SaveAs, chosen);
+    ui.separator();
+    item(ui, Command::Export, chosen);
+    ui.separator();
+    item(ui, Command::Quit, chosen);
+}
+
+fn edit_menu(ui: &mut Ui, state: &MenuState<'_>, chosen: &mut Option<Command>) {
+    for command in [Command::Undo, Command::Redo] {
+        let step = step(state.document, command);
+        let name = step
+            .map_or_else(|| command.name().to_owned(), |step| format!("{} {step}", command.name()));
+        ui.add_enabled_ui(step.is_some(), |ui| labelled_item(ui, command, &name, chosen));
+    }
+}
+
+fn view_menu(ui: &mut Ui, settings: &mut Settings, chosen: &mut Option<Command>) {
+    for command in [Command::Fit, Command::ActualSize, Command::ZoomIn, Command::ZoomOut] {
+        item(ui, command, chosen);
+    }
+    item(ui, Command::CameraTool, chosen);
+    ui.separator();
+    for (theme, name) in
+        [(Theme::System, "As the system"), (Theme::Light, "Light"), (Theme::Dark, "Dark")]
+    {
+        let button = Button::selectable(settings.theme == theme, name);
+        if ui.add(button).on_hover_text("Colours of the window").clicked() {
+            settings.theme = theme;
+        }
+    }
+    ui.separator();
+    for percent in [80, 100, 125, 150, 200] {
+        let button = Button::selectable(settings.zoom_percent == percent, format!("{percent} %"));
+        if ui.add(button).on_hover_text("Size of text and controls").clicked() {
+            settings.zoom_percent = percent;
+        }
+    }
+}
+
+fn item(ui: &mut Ui, command: Command, chosen: &mut Option<Command>) {
+    labelled_item(ui, command, command.name(), chosen);
+}
+
+fn labelled_item(ui: &mut Ui, command: Command, name: &str, chosen: &mut Option<Command>) {
+    let mut button = Button::new(name);
+    if let Some(shortcut) = command.shortcut() {
+        button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
+    }
+    let response = ui.add(button);
+    if response.on_hover_text(command.about()).clicked() {
+        *chosen = Some(command);
+        ui.close();
+    }
+}

@@ -1,0 +1,160 @@
+//! The questions over the window.
+
+use eframe::egui::{Context, Id, Modal as EguiModal, RichText, ScrollArea, Ui};
+
+use super::app::App;
+use super::dialog::Purpose;
+use super::export::ExportChoice;
+use super::files::{For, Modal, Next};
+use super::path_field::Choice;
+use crate::document::recovery::Found;
+
+/// What the person answered to unsaved work.
+enum Unsaved {
+    Save,
+    Discard,
+    Stay,
+}
+
+impl App {
+    /// Shows the question that waits, if any, and does what was answered.
+    pub(super) fn modals(&mut self, ctx: &Context) {
+        let Some(modal) = self.files.modal.take() else { return };
+        let shown = EguiModal::new(Id::new("question")).show(ctx, |ui| match modal {
+            Modal::Unsaved(next) => self.unsaved_ui(ui, next),
+            Modal::Export(mut form) => match form.ui(ui) {
+                None => Some(Modal::Export(form)),
+                Some(ExportChoice::Cancel) => None,
+                Some(ExportChoice::GoOn) => {
+                    let title = self.document.title();
+                    let name = format!("{}.{}", title.trim_end_matches(".toml"), form.ending());
+                    self.ask(ui.ctx(), Purpose::Export, name, For::Export(form));
+                    None
+                }
+            },
+            Modal::Path(mut field, what) => match field.ui(ui) {
+                None => Some(Modal::Path(field, what)),
+                Some(Choice::Cancelled) => None,
+                Some(Choice::File(file)) => {
+                    self.chosen(ui.ctx(), file, what);
+                    None
+                }
+            },
+            Modal::BadScene { path, message, missing } => {
+                let mut stays = true;
+                bad_scene_ui(ui, &message);
+                ui.horizontal(|ui| {
+                    if let Some(mesh) = &missing
+                        && ui
+                            .button("Locate…")
+                            .on_hover_text(format!("Shows where {mesh} is now"))
+                            .clicked()
+                    {
+                        let what = For::Locate { scene: path.clone(), missing: mesh.clone() };
+                        self.ask(ui.ctx(), Purpose::Locate, String::new(), what);
+                        stays = false;
+                    }
+                    let about = "Goes on with the scene that is open";
+                    if ui.button("Close").on_hover_text(about).clicked() {
+                        stays = false;
+                    }
+                });
+                stays.then_some(Modal::BadScene { path, message, missing })
+            }
+            Modal::Recover(found) => self.recover_ui(ui, found),
+        });
+        // What an answer itself opened comes before the question that was just answered.
+        if self.files.modal.is_none() && !(shown.should_close() && closes_lightly(&shown.inner)) {
+            self.files.modal = shown.inner;
+        }
+    }
+
+    fn unsaved_ui(&mut self, ui: &mut Ui, next: Next) -> Option<Modal> {
+        ui.heading(format!("Save the changes to {}?", self.document.title()));
+        ui.label("Without saving they are lost.");
+        let mut answer = None;
+        ui.horizontal(|ui| {
+            for (name, about, value) in [
+                ("Save", "Saves, then goes on", Unsaved::Save),
+                ("Do not save", "Gives the changes up and goes on", Unsaved::Discard),
+                ("Cancel", "Goes on editing", Unsaved::Stay),
+            ] {
+                if ui.button(name).on_hover_text(about).clicked() {
+                    answer = Some(value);
+                }
+            }
+        });
+        match answer {
+            None => return Some(Modal::Unsaved(next)),
+            Some(Unsaved::Save) => self.save(ui.ctx(), Some(next)),
+            Some(Unsaved::Discard) => self.go_on(ui.ctx(), next),
+            Some(Unsaved::Stay) => {}
+        }
+        None
+    }
+
+    fn recover_ui(&mut self, ui: &mut Ui, mut found: Vec<Found>) -> Option<Modal> {
+        ui.heading("Unsaved work was found");
+        ui.label("The program ended before it was saved.");
+        let mut opened = None;
+        let mut discarded = None;
+        for (i, item) in found.iter().enumerate() {
+            ui.horizontal(|ui| {
+                if ui.button("Recover").on_hover_text("Opens it, still unsaved").clicked() {
+                    opened = Some(i);
+                }
+                if ui.button("Discard").on_hover_text("Deletes it for good").clicked() {
+                    discarded = Some(i);
+                }
+                ui.label(format!("{}, {} ago", item.title, age(item.age_secs)));
+            });
+        }
+        let later = ui.button("Later").on_hover_text("Keeps it; asks again at the next start");
+        if let Some(i) = opened {
+            let item = found.remove(i);
+            self.recover(&item);
+            return None;
+        }
+        if let Some(i) = discarded {
+            found.remove(i).discard();
+        }
+        (!later.clicked() && !found.is_empty()).then_some(Modal::Recover(found))
+    }
+}
+
+/// Whether a click beside the question or Escape answers it: yes, where nothing is lost by it.
+fn closes_lightly(modal: &Option<Modal>) -> bool {
+    !matches!(modal, Some(Modal::Recover(_)))
+}
+
+fn bad_scene_ui(ui: &mut Ui, message: &str) {
+    ui.heading("The scene cannot be opened");
+    ui.set_max_width(760.0);
+    ScrollArea::both().max_height(400.0).auto_shrink([true, true]).show(ui, |ui| {
+        ui.label(RichText::new(message).monospace());
+    });
+}
+
+/// A time in words.
+fn age(seconds: u64) -> String {
+    let (count, unit) = match seconds {
+        s if s < 120 => (s, "seconds"),
+        s if s < 2 * 3600 => (s / 60, "minutes"),
+        s if s < 2 * 86_400 => (s / 3600, "hours"),
+        s => (s / 86_400, "days"),
+    };
+    format!("{count} {unit}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ages_are_told_in_words() {
+        assert_eq!(age(59), "59 seconds");
+        assert_eq!(age(600), "10 minutes");
+        assert_eq!(age(7200), "2 hours");
+        assert_eq!(age(200_000), "2 days");
+    }
+}

@@ -1,0 +1,111 @@
+//! The status line: what the last edit cost, what runs, how much is kept.
+
+use eframe::egui::{Align, Button, Layout, ProgressBar, Ui};
+
+use super::command::Command;
+use crate::session::live::{Shown, Stage, Status};
+use crate::session::{Class, EditReport};
+
+/// Shows the status line; gives a command if one of its buttons was pressed.
+pub(super) fn status_ui(ui: &mut Ui, status: &Status, shown: Option<&Shown>) -> Option<Command> {
+    let mut command = None;
+    ui.horizontal(|ui| {
+        ui.label(stage_text(status, shown)).on_hover_text(STAGE);
+        ui.separator();
+        match &status.job {
+            Some(job) => {
+                let (done, total) = job.steps;
+                let share = done as f32 / total.max(1) as f32;
+                let bar = ProgressBar::new(share).desired_width(120.0);
+                ui.add(bar.text(format!("{:.0} %", share * 100.0)))
+                    .on_hover_text("How much of the work is done");
+                if ui.add(Button::new("Stop")).on_hover_text(Command::Stop.about()).clicked() {
+                    command = Some(Command::Stop);
+                }
+                ui.label(&job.what).on_hover_text("What runs, and what asked for it");
+            }
+            None if status.held => {
+                if ui.button("Trace now").on_hover_text(Command::Resume.about()).clicked() {
+                    command = Some(Command::Resume);
+                }
+                ui.label("stopped: the picture shows the scene before the last change");
+            }
+            None => {
+                if let Some(last) = &status.last {
+                    ui.label(edit_text(last)).on_hover_text(edit_about(last));
+                }
+            }
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.label(cache_text(status)).on_hover_text(CACHE);
+        });
+    });
+    command
+}
+
+const STAGE: &str = "A new picture comes coarse first, then with one sample per pixel, then whole";
+const CACHE: &str = "Kept ray trees, matrix and highlight lists, of the memory that they may take";
+
+fn stage_text(status: &Status, shown: Option<&Shown>) -> &'static str {
+    match shown.map(|s| s.stage) {
+        None => "no picture yet",
+        Some(Stage::Coarse) => "coarse",
+        Some(Stage::OneSample) => "one sample",
+        Some(Stage::Whole) if status.in_step => "exact",
+        Some(Stage::Whole) => "earlier scene",
+    }
+}
+
+/// The last edit in one line: class, time, rays.
+fn edit_text(report: &EditReport) -> String {
+    let rays = report.rays.total();
+    let time = match report.milliseconds {
+        ms if ms < 1000.0 => format!("{ms:.1} ms"),
+        ms => format!("{:.1} s", ms / 1e3),
+    };
+    let cast = match rays {
+        0 => "0 rays".to_owned(),
+        n if n < 10_000 => format!("{n} rays"),
+        n => format!("{:.2} million rays", n as f64 / 1e6),
+    };
+    format!("{} · {time} · {cast}", report.class)
+}
+
+fn edit_about(report: &EditReport) -> String {
+    let done = match report.class {
+        Class::None => "Nothing visible changed",
+        Class::Reshade => "Shading was evaluated again from the kept ray trees",
+        Class::Refold => "Highlights were summed again from kept angles, then shaded",
+        Class::Regrow => "Some pixels were traced again",
+        Class::Retrace => "Everything was traced",
+    };
+    match &report.reason {
+        Some(reason) => format!("{done}: {reason}"),
+        None => done.to_owned(),
+    }
+}
+
+fn cache_text(status: &Status) -> String {
+    let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
+    format!("kept {:.0} MB of {:.0} MB", mib(status.bytes), mib(status.budget))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::forest::grow::RayCounts;
+
+    #[test]
+    fn an_edit_is_told_with_class_time_and_rays() {
+        let report = EditReport {
+            class: Class::Reshade,
+            reason: None,
+            rays: RayCounts::default(),
+            pixels: 0,
+            milliseconds: 3.24,
+        };
+        assert_eq!(edit_text(&report), "reshade · 3.2 ms · 0 rays");
+        let slow = EditReport { class: Class::Retrace, milliseconds: 2345.0, ..report };
+        assert_eq!(edit_text(&slow), "retrace · 2.3 s · 0 rays");
+    }
+}
