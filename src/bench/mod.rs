@@ -124,14 +124,16 @@ fn traced(
 }
 
 /// Median and 99th percentile of some times in milliseconds or seconds.
-struct Spread {
+/// Median and tail of some times.
+pub(crate) struct Spread {
     median: f64,
     p99: f64,
     count: usize,
 }
 
 impl Spread {
-    fn of(mut times: Vec<f64>) -> Spread {
+    /// Of times in any order; NaN if there are none.
+    pub(crate) fn of(mut times: Vec<f64>) -> Spread {
         times.sort_by(f64::total_cmp);
         let at = |share: f64| {
             times.get(((times.len() as f64 * share) as usize).min(times.len().saturating_sub(1)))
@@ -140,7 +142,8 @@ impl Spread {
         Spread { median: pick(0.5), p99: pick(0.99), count: times.len() }
     }
 
-    fn json(&self) -> Value {
+    /// With the number of times.
+    pub(crate) fn json(&self) -> Value {
         json!({ "median": self.median, "p99": self.p99, "runs": self.count })
     }
 }

@@ -10,13 +10,14 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand};
+use serde_json::Value;
 
 use crate::color::Rgb;
 use crate::film::write::check_writable;
 use crate::scene::energy::{Overbright, overbright};
-use crate::scene::{Scene, path, read};
+use crate::scene::{Scene, path, read, write};
 use crate::session::Options;
-use crate::viewer::WindowError;
+use crate::viewer::{WindowError, measure};
 
 /// Traces a scene once, keeps every pixel's ray tree, and re-shades it exactly after every edit.
 #[derive(Debug, Parser)]
@@ -56,6 +57,9 @@ struct Bench {
     scenes: Vec<PathBuf>,
     #[command(flatten)]
     common: Common,
+    /// Measure the window instead: from an edit to its picture, and what a turn of its loop costs.
+    #[arg(long)]
+    window: bool,
     /// Write the figures to this file; `-` for standard output.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -167,9 +171,14 @@ impl Bench {
         for (file, scene, options) in scenes {
             let name = file.file_stem().map_or_else(String::new, |n| n.to_string_lossy().into());
             say(&format!("measuring {name} …"));
-            let row = crate::bench::measure(&name, scene, options).map_err(Failure::job)?;
-            say(&crate::bench::summary(&row));
-            rows.push(row);
+            rows.push(match self.window {
+                true => measure_window(&name, &scene, options)?,
+                false => {
+                    let row = crate::bench::measure(&name, scene, options).map_err(Failure::job)?;
+                    say(&crate::bench::summary(&row));
+                    row
+                }
+            });
         }
         let text = serde_json::to_string_pretty(&rows).map_err(Failure::job)?;
         match self.json {
@@ -177,6 +186,16 @@ impl Bench {
             None => Ok(()),
         }
     }
+}
+
+/// Measures the window with a scene, which is written to a file of its own: the window opens files.
+fn measure_window(name: &str, scene: &Scene, options: Options) -> Result<Value, Failure> {
+    let folder = tempfile::tempdir().map_err(Failure::job)?;
+    let file = folder.path().join(format!("{name}.toml"));
+    std::fs::write(&file, write::text(scene)).map_err(Failure::job)?;
+    let row = measure::measure(name, scene, &file, options, folder.path());
+    say(&measure::summary(&row));
+    Ok(row)
 }
 
 impl Common {

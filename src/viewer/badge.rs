@@ -1,6 +1,6 @@
 //! The cost of a control, shown beside it before it is touched.
 
-use eframe::egui::{Align2, Color32, FontId, Sense, Ui, Vec2, WidgetInfo, WidgetType, vec2};
+use eframe::egui::{Align2, Color32, FontId, Role, Sense, Ui, Vec2, WidgetInfo, vec2};
 
 use crate::session::cost::Cost;
 
@@ -92,7 +92,7 @@ pub(super) fn badge_ui(ui: &mut Ui, name: &str, cost: Option<Cost>, width: f32) 
     let at = center + Vec2::new(8.0, 0.0);
     ui.painter().text(at, Align2::LEFT_CENTER, text(cost), font, color);
     response.widget_info(|| {
-        WidgetInfo::labeled(WidgetType::Label, true, format!("cost of {name}: {}", text(cost)))
+        WidgetInfo::labeled(Role::Label, true, format!("cost of {name}: {}", text(cost)))
     });
     response.on_hover_ui(|ui| {
         ui.label(explanation(cost));

@@ -4,7 +4,7 @@ use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
 /// A command of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Command {
+pub(super) enum Command {
     /// A new scene from the template with this index.
     New(usize),
     /// Asks for a scene file and opens it.
@@ -43,7 +43,7 @@ const CTRL: Modifiers = Modifiers::COMMAND;
 
 impl Command {
     /// What menus and buttons call it.
-    pub fn name(self) -> &'static str {
+    pub(super) fn name(self) -> &'static str {
         match self {
             Command::New(_) => "New",
             Command::Open => "Open…",
@@ -65,7 +65,7 @@ impl Command {
     }
 
     /// What it does, one sentence.
-    pub fn about(self) -> &'static str {
+    pub(super) fn about(self) -> &'static str {
         match self {
             Command::New(_) => "Starts a scene from this template",
             Command::Open => "Opens a scene file",
@@ -89,7 +89,7 @@ impl Command {
     }
 
     /// The keys that give it.
-    pub fn shortcut(self) -> Option<KeyboardShortcut> {
+    pub(super) fn shortcut(self) -> Option<KeyboardShortcut> {
         let keys = |modifiers, key| Some(KeyboardShortcut::new(modifiers, key));
         match self {
             Command::Open => keys(CTRL, Key::O),
@@ -113,7 +113,7 @@ impl Command {
 
     /// The commands with shortcuts. Those with more modifiers come first, so that Shift-Ctrl-Z is
     /// not taken for Ctrl-Z.
-    pub const WITH_SHORTCUTS: [Command; 11] = [
+    pub(super) const WITH_SHORTCUTS: [Command; 11] = [
         Command::SaveAs,
         Command::Redo,
         Command::Open,

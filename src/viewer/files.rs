@@ -247,8 +247,13 @@ impl App {
         while let Ok(done) = self.files.receive.try_recv() {
             self.receive_done(ctx, done);
         }
-        let dropped =
-            ctx.input(|i| i.raw.dropped_files.iter().find_map(|f| f.path().map(Path::to_owned)));
+        let dropped = ctx.input(|i| {
+            i.raw
+                .dropped_files
+                .iter()
+                .map(|f| f.path().to_owned())
+                .find(|p| !p.as_os_str().is_empty())
+        });
         if let Some(path) = dropped {
             self.after_unsaved(ctx, Next::Open(path));
         }

@@ -9,6 +9,7 @@ mod export;
 mod files;
 mod hints;
 mod inspector;
+pub mod measure;
 mod menu;
 mod modal;
 mod navigate;

@@ -20,7 +20,7 @@ impl App {
     /// Shows the question that waits, if any, and does what was answered.
     pub(super) fn modals(&mut self, ctx: &Context) {
         let Some(modal) = self.files.modal.take() else { return };
-        let shown = EguiModal::new(Id::new("question")).show(ctx, |ui| match modal {
+        let shown = EguiModal::new(Id::unique("question")).show(ctx, |ui| match modal {
             Modal::Unsaved(next) => self.unsaved_ui(ui, next),
             Modal::Export(mut form) => match form.ui(ui) {
                 None => Some(Modal::Export(form)),

@@ -53,7 +53,7 @@ impl Notices {
         }
         let space = ui.max_rect();
         let corner = pos2(space.left() + 12.0, space.bottom() - 12.0);
-        let area = Area::new(Id::new("notices")).order(Order::Foreground);
+        let area = Area::new(Id::unique("notices")).order(Order::Foreground);
         let mut closed = None;
         area.pivot(eframe::egui::Align2::LEFT_BOTTOM).fixed_pos(corner).show(ui.ctx(), |ui| {
             ui.set_max_width((space.width() - 24.0).min(640.0));

@@ -1,8 +1,8 @@
 //! The picture on the screen: zoom to the pointer, pan, 1:1, clicks that pick, drags that move the camera.
 
 use eframe::egui::{
-    Color32, ColorImage, CursorIcon, PointerButton, Pos2, Rect, Response, Sense, TextureHandle,
-    TextureOptions, Ui, Vec2, WidgetInfo, WidgetType, pos2, vec2,
+    Color32, ColorImage, CursorIcon, PointerButton, Pos2, Rect, Response, Role, Sense,
+    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
 use super::navigate;
@@ -133,7 +133,7 @@ impl PictureView {
     pub(super) fn ui(&mut self, ui: &mut Ui, camera: &mut Camera) -> PictureOutcome {
         let view = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(view, Sense::click_and_drag());
-        response.widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, "picture"));
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "picture"));
         let dots = ui.pixels_per_point();
         let mut outcome = PictureOutcome::default();
         self.wheel(ui, &response, camera, &mut outcome);
