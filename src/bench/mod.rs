@@ -124,7 +124,6 @@ fn traced(
 }
 
 /// Median and 99th percentile of some times in milliseconds or seconds.
-/// Median and tail of some times.
 pub(crate) struct Spread {
     median: f64,
     p99: f64,

@@ -42,6 +42,8 @@ pub struct App {
     wheel_until: Option<Instant>,
     /// Size of the picture's view in points.
     view: Vec2,
+    /// The window's title as it was set last.
+    title: String,
 }
 
 impl App {
@@ -78,6 +80,7 @@ impl App {
             watched: None,
             wheel_until: None,
             view: Vec2::ZERO,
+            title: String::new(),
         };
         if let Some(path) = setup.scene {
             app.open_in_background(ctx, path);
@@ -108,6 +111,17 @@ impl App {
         }
         self.watch_costs();
         self.autosave(&ctx);
+        self.set_title(&ctx);
+    }
+
+    /// Names the document in the window's title, with a star if it has unsaved changes.
+    fn set_title(&mut self, ctx: &Context) {
+        let mark = if self.document.is_unsaved() { "*" } else { "" };
+        let title = format!("{}{mark} – Rayforest", self.document.title());
+        if title != self.title {
+            ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
     }
 
     /// Takes pictures and events from the session.

@@ -1,6 +1,6 @@
 //! The menu bar.
 
-use eframe::egui::{Button, MenuBar, Ui};
+use eframe::egui::{Align, Button, Label, Layout, MenuBar, Ui};
 
 use super::command::Command;
 use crate::document::settings::{Settings, Theme};
@@ -51,8 +51,22 @@ pub(super) fn menu_ui(
         if ui.add(camera).on_hover_text(Command::CameraTool.about()).clicked() {
             chosen = Some(Command::CameraTool);
         }
+        title_ui(ui, state.document);
     });
     chosen
+}
+
+/// The document's name at the right end, with a mark if it has unsaved changes.
+fn title_ui(ui: &mut Ui, document: &Document) {
+    let unsaved = document.is_unsaved();
+    let text = if unsaved { format!("{} •", document.title()) } else { document.title() };
+    let file =
+        document.path().map_or("not saved to a file yet".into(), |p| p.display().to_string());
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        let label = ui.add(Label::new(text).truncate());
+        let state = if unsaved { "has unsaved changes" } else { "is saved" };
+        label.on_hover_text(format!("{file}; {state}"));
+    });
 }
 
 /// What undo or redo would do.
