@@ -66,7 +66,6 @@ impl App {
             }
         };
         let document = Document::built_in();
-        live.want(Arc::new(document.scene().clone()));
         let mut app = App {
             document,
             live,
@@ -82,8 +81,9 @@ impl App {
             view: Vec2::ZERO,
             title: String::new(),
         };
-        if let Some(path) = setup.scene {
-            app.open_in_background(ctx, path);
+        match setup.scene {
+            Some(path) => app.open_in_background(ctx, path),
+            None => app.show_scene(),
         }
         app.files.offer_recovery(found);
         app

@@ -288,6 +288,9 @@ impl App {
                     self.remember_file(&path);
                 }
                 Err(DocumentError { message, missing }) => {
+                    if self.shown.is_none() {
+                        self.show_scene();
+                    }
                     self.files.modal = Some(Modal::BadScene { path, message, missing });
                 }
             },

@@ -3,6 +3,7 @@
 mod bad_input;
 mod command_line;
 mod killed;
+mod window;
 
 use std::path::Path;
 use std::process::{Command, Output};
