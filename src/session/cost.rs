@@ -138,8 +138,7 @@ impl Knob {
     /// Whether a factor depends on it.
     fn concerns(self, factor: Factor) -> bool {
         let mirror = matches!(factor.kind(), Kind::Reflect | Kind::TotalReflect);
-        let through =
-            matches!(factor.kind(), Kind::Transmit | Kind::Shadow | Kind::TotalReflect);
+        let through = matches!(factor.kind(), Kind::Transmit | Kind::Shadow | Kind::TotalReflect);
         match self {
             Knob::Reflect(material) => mirror && factor.index() == material,
             Knob::Transmit(material) => through && factor.index() == material,

@@ -329,7 +329,8 @@ impl<'a> Job<'a> {
             let transport = self.finish_tile(&mut folder);
             outcome.folding += folding.elapsed();
             // A clone takes no more memory than it needs.
-            let kept = (whole && self.kept == Kept::Trees).then(|| old.map_or_else(|| scratch.clone(), TileTrees::trimmed));
+            let kept = (whole && self.kept == Kept::Trees)
+                .then(|| old.map_or_else(|| scratch.clone(), TileTrees::trimmed));
             self.store(tile, kept, transport)?;
             self.progress.step();
         }
