@@ -2,8 +2,11 @@
 //!
 //! Every struct is destructured without `..`: a new field does not compile until its cost is decided.
 
+use std::sync::Arc;
+
 use super::{
-    Background, Camera, Light, LightPlace, Material, Paint, Picture, Placement, Scene, Solid, Trace,
+    Background, Camera, Light, LightPlace, Material, Paint, Picture, Placement, Scene, Shape,
+    Solid, Trace,
 };
 
 /// What differs between two scenes, by consequence. The frontier of the kept trees, which a scene
@@ -139,7 +142,12 @@ impl Change {
 
     fn solid(&mut self, old: &Solid, new: &Solid) {
         let Solid { name: _, shape, material, placement } = old;
-        self.form(*shape != new.shape, "a solid's shape");
+        // A mesh that is shared is not compared vertex by vertex.
+        let same_mesh = match (shape, &new.shape) {
+            (Shape::Mesh { mesh: a, .. }, Shape::Mesh { mesh: b, .. }) => Arc::ptr_eq(a, b),
+            _ => false,
+        };
+        self.form(!same_mesh && *shape != new.shape, "a solid's shape");
         self.form(*material != new.material, "a solid's material");
         let Placement { translate, rotate_degrees, scale } = placement;
         self.form(*translate != new.placement.translate, "translate");

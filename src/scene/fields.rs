@@ -11,6 +11,8 @@ use super::{
 pub const COEFFICIENT: Range = Range::closed(0.0, 1e6);
 /// Weights of the reflected and the refracted ray.
 pub const WEIGHT: Range = Range::closed(0.0, 10.0);
+/// Longest chain of reflections and refractions.
+pub const DEPTH: Range = Range::closed(0.0, 64.0);
 /// A share of one.
 pub const SHARE: Range = Range::closed(0.0, 1.0);
 /// Positions, directions and angles.
@@ -115,7 +117,7 @@ pub fn picture(picture: &mut Picture, v: &mut dyn Visit) {
 pub fn trace(trace: &mut Trace, v: &mut dyn Visit) {
     let Trace { samples, depth, cutoff } = trace;
     v.leaf("samples", Need::Optional, Slot::Whole(samples, Range::closed(1.0, 4096.0)));
-    v.leaf("depth", Need::Optional, Slot::Whole(depth, Range::closed(0.0, 64.0)));
+    v.leaf("depth", Need::Optional, Slot::Whole(depth, DEPTH));
     v.leaf("cutoff", Need::Optional, Slot::Single(cutoff, SHARE));
 }
 

@@ -100,6 +100,21 @@ pub fn join(path: &str, key: &str) -> String {
     if path.is_empty() { key } else { format!("{path}.{key}") }
 }
 
+/// The scene with another value of the parameter at `path`, which may not go together with the
+/// rest: for comparison alone. `None` if there is no such parameter, or it cannot be set.
+pub fn altered(scene: &Scene, path: &str) -> Option<Scene> {
+    let wanted = canonical(path);
+    let mut altered = scene.clone();
+    let mut found = false;
+    walk(&mut altered, &mut |path, _, mut slot| {
+        if path == wanted && slot.kind() != Kind::File {
+            slot.alter();
+            found = true;
+        }
+    });
+    found.then_some(altered)
+}
+
 /// Parses `value` and writes it into the slot; after an error: what is wrong, and a way out.
 fn assign(
     slot: &mut Slot<'_>,
@@ -264,6 +279,26 @@ mod tests {
             (DVec3::splat(2.0), 1)
         );
         assert_eq!(scene.solids[5].material, 1);
+    }
+
+    #[test]
+    fn an_altered_parameter_differs_and_keeps_to_its_range() {
+        let original = scene();
+        for path in parameters(&original).iter().map(|p| p.path.as_str()) {
+            let altered = altered(&original, path).unwrap();
+            assert_ne!(altered, original, "{path}");
+            let names = Names::of(&altered.materials);
+            let mut twice = altered.clone();
+            walk(&mut twice, &mut |at, key, mut slot| {
+                if at == path {
+                    assert_eq!(slot.fault(key, &names), None, "{path}");
+                    slot.alter();
+                }
+            });
+            assert_ne!(twice, altered, "{path}");
+        }
+        assert_eq!(altered(&original, "camera.ear"), None);
+        assert_eq!(altered(&original, "solids.mesh.mesh.file"), None);
     }
 
     #[test]

@@ -130,6 +130,29 @@ impl Slot<'_> {
         }
     }
 
+    /// Puts another value of the range in its place, heeding no other rule: whoever asks what a
+    /// change touches compares with it. The content of a file stays.
+    pub fn alter(&mut self) {
+        match self {
+            Slot::Coefficient(rgb, range) => {
+                rgb.0[0] = another(rgb.0[0], *range, |x| x as f32);
+            }
+            Slot::Single(x, range) => **x = another(**x, *range, |x| x as f32),
+            Slot::Number(x, range) => **x = another(**x, *range, |x| x),
+            Slot::Whole(n, range) => **n = another(**n, *range, |x| x as u32),
+            Slot::Pair(pair, range) => pair[0] = another(pair[0], *range, |x| x as u32),
+            Slot::Flag(on) => **on = !**on,
+            Slot::Vector(v, range) | Slot::Scale(v, range) => v.x = another(v.x, *range, |x| x),
+            Slot::Points(points, range) => {
+                for point in points.iter_mut() {
+                    point.x = another(point.x, *range, |x| x);
+                }
+            }
+            Slot::Material(index) => **index += 1,
+            Slot::Mesh { .. } => {}
+        }
+    }
+
     /// What is wrong with the present value by its range alone, with a way out.
     pub fn fault(&self, key: &str, names: &Names) -> Option<(String, String)> {
         let (_, x) = self.first_outside()?;
@@ -164,4 +187,11 @@ impl Slot<'_> {
             _ => number(x),
         }
     }
+}
+
+/// The middle of a range, or, in its place, the middle of the range's lower half.
+fn another<T: PartialEq>(present: T, range: Range, narrow: impl Fn(f64) -> T) -> T {
+    let middle = (range.low + range.high) / 2.0;
+    let value = narrow(middle);
+    if value == present { narrow((range.low + middle) / 2.0) } else { value }
 }

@@ -1,5 +1,14 @@
 //! What editing a parameter will cost, known before it is touched.
 
+use super::Session;
+use crate::color::Rgb;
+use crate::fold::trie::ROOT;
+use crate::scene::change::Change;
+use crate::scene::factor::{Factor, FactorValues, Kind};
+use crate::scene::fields::{COEFFICIENT, DEPTH, SHARE, WEIGHT};
+use crate::scene::{Scene, path};
+use crate::shade::terms::frontier_lives;
+
 /// The cost of setting one parameter to another value, all others staying as they are.
 ///
 /// Values of a colour or per-channel coefficient are compared per channel: "up to x" holds if no
@@ -16,4 +25,194 @@ pub enum Cost {
     Refold,
     /// Everything is traced.
     TraceAll,
+}
+
+/// What editing the parameter at `path` will cost in a session; `None` if there is no such
+/// parameter.
+///
+/// Where a branch may come alive, the limit is exact to the last bit: liveness rises with every
+/// parameter (and falls with the cut-off), so the greatest value is sought at which no term of the
+/// frontier lives.
+pub fn cost(session: &Session, path: &str) -> Option<Cost> {
+    let scene = session.scene();
+    let altered = path::altered(scene, path)?;
+    let change = Change::between(scene, &altered);
+    let released = || session.transport.tiles.iter().any(|tile| tile.highlights.is_none());
+    Some(if change.moves_rays.is_some() {
+        Cost::TraceAll
+    } else if !change.refold.is_empty() {
+        if released() { Cost::TraceAll } else { Cost::Refold }
+    } else {
+        Knob::between(scene, &altered).map_or(Cost::Instant, |knob| knob.cost(session))
+    })
+}
+
+/// A parameter that the rule of liveness reads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Knob {
+    /// Of the material with this index.
+    Reflect(usize),
+    /// Of the material with this index.
+    Transmit(usize),
+    /// Of the material with this index.
+    Filter(usize),
+    /// The limit of depth.
+    Depth,
+    /// The limit of weight: lower values let more live.
+    Cutoff,
+}
+
+impl Knob {
+    /// The one that differs.
+    fn between(scene: &Scene, altered: &Scene) -> Option<Knob> {
+        let (old, new) = (&scene.trace, &altered.trace);
+        if old.depth != new.depth {
+            return Some(Knob::Depth);
+        }
+        if old.cutoff != new.cutoff {
+            return Some(Knob::Cutoff);
+        }
+        let mut pairs = scene.materials.iter().zip(&altered.materials).enumerate();
+        pairs.find_map(|(i, (a, b))| {
+            let reflect = (a.reflect != b.reflect).then_some(Knob::Reflect(i));
+            let transmit = (a.transmit != b.transmit).then_some(Knob::Transmit(i));
+            reflect.or(transmit).or((a.filter != b.filter).then_some(Knob::Filter(i)))
+        })
+    }
+
+    /// The coefficient that it sets.
+    fn coefficient(self, scene: &mut Scene) -> Option<&mut Rgb> {
+        match self {
+            Knob::Reflect(i) => Some(&mut scene.materials[i].reflect),
+            Knob::Transmit(i) => Some(&mut scene.materials[i].transmit),
+            Knob::Filter(i) => Some(&mut scene.materials[i].filter),
+            Knob::Depth | Knob::Cutoff => None,
+        }
+    }
+
+    /// Steps of the parameter that let ever more live, from its present value to the end of its
+    /// range: the bits of a positive float are in the order of its values.
+    fn steps(self, scene: &Scene) -> [u32; 2] {
+        let bits = |x: f32| (x + 0.0).to_bits();
+        match self {
+            Knob::Depth => [scene.trace.depth, DEPTH.high as u32],
+            Knob::Cutoff => {
+                let top = bits(SHARE.high as f32);
+                [top - bits(scene.trace.cutoff), top - bits(SHARE.low as f32)]
+            }
+            _ => {
+                let range = if matches!(self, Knob::Filter(_)) { COEFFICIENT } else { WEIGHT };
+                let present = self.coefficient(&mut scene.clone()).map_or(Rgb::BLACK, |c| *c);
+                let Rgb([r, g, b]) = present;
+                [bits(r.min(g).min(b)), bits(range.high as f32)]
+            }
+        }
+    }
+
+    /// The value at a step.
+    fn value(self, step: u32) -> f64 {
+        match self {
+            Knob::Depth => f64::from(step),
+            Knob::Cutoff => f64::from(f32::from_bits((SHARE.high as f32).to_bits() - step)),
+            _ => f64::from(f32::from_bits(step)),
+        }
+    }
+
+    /// All factors, with the parameter at a step.
+    fn factors(self, scene: &mut Scene, present: &Scene, step: u32) -> FactorValues {
+        let value = self.value(step);
+        match self {
+            Knob::Depth => scene.trace.depth = step,
+            Knob::Cutoff => scene.trace.cutoff = value as f32,
+            _ => {
+                let before = self.coefficient(&mut present.clone()).map(|c| *c);
+                let raised = before.map(|c| c.map(|c| c.max(value as f32)));
+                if let (Some(coefficient), Some(raised)) = (self.coefficient(scene), raised) {
+                    *coefficient = raised;
+                }
+            }
+        }
+        FactorValues::new(scene)
+    }
+
+    /// Whether a factor depends on it.
+    fn concerns(self, factor: Factor) -> bool {
+        let mirror = matches!(factor.kind(), Kind::Reflect | Kind::TotalReflect);
+        let through = matches!(factor.kind(), Kind::Transmit | Kind::Shadow | Kind::TotalReflect);
+        match self {
+            Knob::Reflect(material) => mirror && factor.index() == material,
+            Knob::Transmit(material) => through && factor.index() == material,
+            Knob::Filter(material) => through && factor.index() == material,
+            Knob::Depth | Knob::Cutoff => true,
+        }
+    }
+
+    fn cost(self, session: &Session) -> Cost {
+        let [first, last] = self.steps(session.scene());
+        let limit = Search::new(self, session.scene(), first, last).limit(session);
+        match self {
+            _ if limit == last => Cost::Instant,
+            Knob::Cutoff => Cost::InstantDownTo(self.value(limit)),
+            _ => Cost::InstantUpTo(self.value(limit)),
+        }
+    }
+}
+
+/// The search for the greatest step at which no term of the frontier lives.
+struct Search<'a> {
+    knob: Knob,
+    present: &'a Scene,
+    scene: Scene,
+    /// Nothing lives here.
+    first: u32,
+    /// The best limit so far.
+    best: u32,
+    at_best: FactorValues,
+}
+
+impl<'a> Search<'a> {
+    fn new(knob: Knob, present: &'a Scene, first: u32, last: u32) -> Search<'a> {
+        let mut scene = present.clone();
+        let at_best = knob.factors(&mut scene, present, last);
+        Search { knob, present, scene, first, best: last, at_best }
+    }
+
+    fn limit(mut self, session: &Session) -> u32 {
+        let nodes = session.transport.trie.nodes();
+        let mut factors = Vec::new();
+        for mut id in session.program.frontier() {
+            factors.clear();
+            let mut concerned = false;
+            while id != ROOT {
+                let node = &nodes[id as usize];
+                concerned |= self.knob.concerns(node.factor);
+                factors.push(node.factor);
+                id = node.parent;
+            }
+            if concerned {
+                factors.reverse();
+                self.lower(&factors);
+            }
+        }
+        self.best
+    }
+
+    /// Lowers the limit to the last step at which the given term does not live, if it is lower.
+    fn lower(&mut self, factors: &[Factor]) {
+        if !frontier_lives(factors, &self.at_best) {
+            return;
+        }
+        let (mut dead, mut alive) = (self.first, self.best);
+        while alive - dead > 1 {
+            let middle = dead + (alive - dead) / 2;
+            let values = self.knob.factors(&mut self.scene, self.present, middle);
+            if frontier_lives(factors, &values) {
+                alive = middle;
+            } else {
+                dead = middle;
+            }
+        }
+        self.best = dead;
+        self.at_best = self.knob.factors(&mut self.scene, self.present, dead);
+    }
 }

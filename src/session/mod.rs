@@ -1,11 +1,13 @@
 //! The program without a window: a scene in, a picture out, and the least work for every edit.
 
+mod canvas;
 pub mod cost;
 pub mod inspect;
 pub mod live;
 pub mod trace;
 
 use std::fmt;
+use std::sync::Arc;
 use std::time::Instant;
 
 use rayon::prelude::*;
@@ -25,7 +27,8 @@ use crate::scene::change::Change;
 use crate::scene::factor::FactorValues;
 use crate::shade::cpu::{self, Tiles};
 use crate::shade::terms::{TermProgram, TermValues};
-use trace::{TraceError, TraceReport, trace};
+use canvas::Canvas;
+use trace::{Keep, Kept, TraceError, TraceReport, trace};
 
 /// What a session may use.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +37,7 @@ pub struct Options {
     pub threads: usize,
     /// Bytes that trees, matrix and highlight lists may take together. Not counted: the geometry,
     /// the list of terms, each thread's scratch (a few tiles), and, while a scene is traced again,
-    /// the matrix before it, which is held so that a cancel costs nothing.
+    /// the matrix before it, which is held so that a cancel costs nothing, and that of a preview.
     pub memory: u64,
 }
 
@@ -96,50 +99,74 @@ pub struct EditReport {
 /// A scene, its kept trees, and its picture, always in step: after every successful call the frame
 /// is what a fresh trace of [`Session::scene`] gives, bit for bit.
 pub struct Session {
-    scene: Scene,
+    scene: Arc<Scene>,
     options: Options,
-    pool: ThreadPool,
-    geometry: Geometry,
+    pool: Arc<ThreadPool>,
+    geometry: Arc<Geometry>,
     forest: Forest,
     transport: Transport,
     program: TermProgram,
     terms: TermValues,
     /// The terms before the latest edit, to find the tiles that changed.
     before: Vec<[f32; 4]>,
-    frame: Frame,
+    canvas: Canvas,
     trace: TraceReport,
     geometry_seconds: f64,
+}
+
+/// All that a session begins with.
+pub(super) struct Start {
+    /// What to trace.
+    pub(super) scene: Arc<Scene>,
+    /// What [`Geometry::build`] makes of the scene's solids; sessions of the same solids share it.
+    pub(super) geometry: Arc<Geometry>,
+    /// Threads to trace with.
+    pub(super) pool: Arc<ThreadPool>,
+    /// What the session may use.
+    pub(super) options: Options,
+    /// What of the trace is kept.
+    pub(super) kept: Kept,
+    /// Memory to fill anew.
+    pub(super) reuse: Forest,
 }
 
 impl Session {
     /// Traces a scene.
     pub fn open(
-        scene: Scene,
+        scene: impl Into<Arc<Scene>>,
         options: Options,
         progress: &Progress,
     ) -> Result<Session, TraceError> {
         assert!(options.threads > 0, "a session needs a thread");
+        let scene = scene.into();
         let pool = ThreadPoolBuilder::new().num_threads(options.threads).build();
         let pool = pool.map_err(|_| TraceError::Threads { threads: options.threads })?;
         let start = Instant::now();
-        let geometry = Geometry::build(&scene, progress)?;
+        let geometry = Arc::new(Geometry::build(&scene, progress)?);
         let geometry_seconds = start.elapsed().as_secs_f64();
-        let traced = trace(&scene, &geometry, &pool, options.memory, Forest::default(), progress)?;
-        let frame = Frame::new(scene.picture.size);
-        let program = TermProgram::new(&traced.transport.trie);
+        let (pool, reuse) = (Arc::new(pool), Forest::default());
+        let start = Start { scene, geometry, pool, options, kept: Kept::Trees, reuse };
+        Ok(Session { geometry_seconds, ..Session::begin(start, progress)? })
+    }
+
+    /// Traces and draws.
+    pub(super) fn begin(start: Start, progress: &Progress) -> Result<Session, TraceError> {
+        let Start { scene, geometry, pool, options, kept, reuse } = start;
+        let keep = Keep { what: kept, bytes: options.memory };
+        let traced = trace(&scene, &geometry, &pool, keep, reuse, progress)?;
         let mut session = Session {
+            canvas: Canvas::new(scene.picture.size),
             scene,
             options,
             pool,
             geometry,
             forest: traced.forest,
+            program: TermProgram::new(&traced.transport.trie),
             transport: traced.transport,
-            program,
             terms: TermValues::default(),
             before: Vec::new(),
-            frame,
             trace: traced.report,
-            geometry_seconds,
+            geometry_seconds: 0.0,
         };
         session.evaluate_terms();
         session.draw(Tiles::All);
@@ -148,27 +175,47 @@ impl Session {
 
     /// Makes `scene` the session's, with the least work. On an error the session keeps its old
     /// scene and picture; trees may have been released.
-    pub fn edit(&mut self, scene: Scene, progress: &Progress) -> Result<EditReport, TraceError> {
+    pub fn edit(
+        &mut self,
+        scene: impl Into<Arc<Scene>>,
+        progress: &Progress,
+    ) -> Result<EditReport, TraceError> {
         let start = Instant::now();
-        let change = Change::between(&self.scene, &scene);
-        let mut report = EditReport {
-            class: Class::None,
-            reason: None,
-            rays: RayCounts::default(),
-            pixels: 0,
-            milliseconds: 0.0,
+        let scene = scene.into();
+        let mut report = match self.edit_without_rays(&scene) {
+            Ok(report) => report,
+            Err(reason) => {
+                let change = Change::between(&self.scene, &scene);
+                self.retrace(scene, change.geometry, progress)?;
+                self.trace_edit(reason)
+            }
         };
-        if let Some(reason) = self.needs_rays(&scene, &change) {
-            self.retrace(scene, change.geometry, progress)?;
-            report.class = Class::Retrace;
-            report.reason = Some(reason);
-            report.rays = self.trace.rays;
-            report.pixels = self.transport.layout.pixels();
-        } else {
-            report.class = self.without_rays(scene, &change);
-        }
         report.milliseconds = start.elapsed().as_secs_f64() * 1e3;
         Ok(report)
+    }
+
+    /// Makes `scene` the session's if that needs no ray; otherwise the session stays as it is, and
+    /// the error says what asks for rays.
+    pub fn edit_without_rays(&mut self, scene: &Arc<Scene>) -> Result<EditReport, String> {
+        let start = Instant::now();
+        let change = Change::between(&self.scene, scene);
+        if let Some(reason) = self.needs_rays(scene, &change) {
+            return Err(reason);
+        }
+        let class = self.without_rays(scene.clone(), &change);
+        let milliseconds = start.elapsed().as_secs_f64() * 1e3;
+        Ok(EditReport { class, reason: None, rays: RayCounts::default(), pixels: 0, milliseconds })
+    }
+
+    /// The report of an edit for which everything was just traced, its time still 0.
+    pub(super) fn trace_edit(&self, reason: String) -> EditReport {
+        EditReport {
+            class: Class::Retrace,
+            reason: Some(reason),
+            rays: self.trace.rays,
+            pixels: self.transport.layout.pixels(),
+            milliseconds: 0.0,
+        }
     }
 
     /// What in an edit cannot be had from what is kept.
@@ -189,7 +236,7 @@ impl Session {
         None
     }
 
-    fn without_rays(&mut self, scene: Scene, change: &Change) -> Class {
+    fn without_rays(&mut self, scene: Arc<Scene>, change: &Change) -> Class {
         self.scene = scene;
         let mut marks = vec![change.develop; self.transport.tiles.len()];
         if !change.refold.is_empty() {
@@ -200,7 +247,9 @@ impl Session {
             self.evaluate_terms();
             self.mark_changed(&mut marks);
         }
-        self.draw(Tiles::Marked(&marks));
+        if marks.contains(&true) {
+            self.draw(Tiles::Marked(&marks));
+        }
         class_without_rays(change)
     }
 
@@ -234,36 +283,46 @@ impl Session {
     /// Traces `scene`, after compiling its geometry if `compile` says that it differs.
     fn retrace(
         &mut self,
-        scene: Scene,
+        scene: Arc<Scene>,
         compile: bool,
         progress: &Progress,
     ) -> Result<(), TraceError> {
         let start = Instant::now();
-        let compiled = if compile { Some(Geometry::build(&scene, progress)?) } else { None };
-        let seconds = start.elapsed().as_secs_f64();
-        let geometry = compiled.as_ref().unwrap_or(&self.geometry);
-        let released = vec![None; self.forest.tiles.len()];
-        let old = Forest { tiles: released, ..self.forest };
-        let reuse = std::mem::replace(&mut self.forest, old);
-        let traced = trace(&scene, geometry, &self.pool, self.options.memory, reuse, progress)?;
-        self.scene = scene;
-        if let Some(geometry) = compiled {
-            (self.geometry, self.geometry_seconds) = (geometry, seconds);
-        }
-        self.forest = traced.forest;
-        self.transport = traced.transport;
-        self.program = TermProgram::new(&self.transport.trie);
-        self.trace = traced.report;
-        self.frame = Frame::new(self.scene.picture.size);
-        self.evaluate_terms();
-        self.draw(Tiles::All);
+        let (geometry, geometry_seconds) = if compile {
+            let geometry = Geometry::build(&scene, progress)?;
+            (Arc::new(geometry), start.elapsed().as_secs_f64())
+        } else {
+            (self.geometry.clone(), self.geometry_seconds)
+        };
+        let (pool, options, reuse) = (self.pool.clone(), self.options, self.take_trees());
+        let start = Start { scene, geometry, pool, options, kept: Kept::Trees, reuse };
+        *self = Session { geometry_seconds, ..Session::begin(start, progress)? };
         Ok(())
+    }
+
+    /// Releases all trees and gives their memory.
+    pub(super) fn take_trees(&mut self) -> Forest {
+        let tiles = vec![None; self.forest.tiles.len()];
+        let released = Forest { tiles, ..self.forest };
+        std::mem::replace(&mut self.forest, released)
+    }
+
+    /// Takes back what [`Session::take_trees`] gave.
+    pub(super) fn give_trees(&mut self, trees: Forest) {
+        assert_eq!(trees.layout, self.forest.layout, "the session's own trees");
+        self.forest = trees;
+    }
+
+    /// Lets other threads do the work from now on.
+    pub(super) fn move_to(&mut self, pool: &Arc<ThreadPool>) {
+        self.pool = pool.clone();
     }
 
     fn draw(&mut self, tiles: Tiles) {
         let gain = exposure_factor(self.scene.picture.exposure);
         let values = &self.terms.values;
-        cpu::frame(&self.pool, &self.transport, values, gain, tiles, &mut self.frame);
+        let frame = self.canvas.edit();
+        cpu::frame(&self.pool, &self.transport, values, gain, tiles, frame);
     }
 
     /// Traces the same scene again, into the memory of the present trees.
@@ -364,7 +423,28 @@ impl Session {
 
     /// The picture as shown.
     pub fn frame(&self) -> &Frame {
-        &self.frame
+        self.canvas.newest()
+    }
+
+    /// The same, to be kept: it stays what it is when the session is edited.
+    pub fn shared_frame(&self) -> Arc<Frame> {
+        self.canvas.newest().clone()
+    }
+
+    /// The scene shown, to be kept.
+    pub fn shared_scene(&self) -> Arc<Scene> {
+        self.scene.clone()
+    }
+
+    /// The compiled scene, to be kept.
+    pub fn shared_geometry(&self) -> Arc<Geometry> {
+        self.geometry.clone()
+    }
+
+    /// Allocated bytes of what [`Options::memory`] limits.
+    pub fn kept_bytes(&self) -> u64 {
+        let matrix = self.transport.bytes() + self.transport.highlight_bytes();
+        (self.forest.bytes() + matrix) as u64
     }
 
     /// Times and counts of the latest trace.

@@ -18,6 +18,26 @@ use crate::geometry::Geometry;
 use crate::progress::{Cancelled, Progress};
 use crate::scene::Scene;
 
+/// What a trace may keep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Keep {
+    /// What is of use afterwards.
+    pub what: Kept,
+    /// Bytes that all of it may take.
+    pub bytes: u64,
+}
+
+/// What of a trace is kept, if the budget allows it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kept {
+    /// Everything.
+    Trees,
+    /// Matrix and highlight lists: edits are as instant as with trees.
+    Lists,
+    /// The matrix alone: enough for a picture.
+    Matrix,
+}
+
 /// Why a trace gave no picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TraceError {
@@ -146,18 +166,18 @@ pub fn trace_only(
 
 /// Traces and folds `scene`. The memory of `reuse`, an earlier forest, is filled anew.
 ///
-/// Each tile is folded block by block while its trees are in cache. Beyond `budget` bytes trees are
+/// Each tile is folded block by block while its trees are in cache. Beyond the budget trees are
 /// released first, then highlight lists; the picture does not depend on what is kept.
 pub fn trace(
     scene: &Scene,
     geometry: &Geometry,
     pool: &ThreadPool,
-    budget: u64,
+    keep: Keep,
     reuse: Forest,
     progress: &Progress,
 ) -> Result<Traced, TraceError> {
     let start = Instant::now();
-    let job = Job::new(scene, geometry, pool.current_num_threads(), budget, reuse, progress);
+    let job = Job::new(scene, geometry, pool.current_num_threads(), keep, reuse, progress);
     let outcomes = pool.broadcast(|_| job.work());
     let mut report = TraceReport::default();
     let threads = outcomes.len() as f64;
@@ -191,6 +211,7 @@ struct Job<'a> {
     slots: Vec<Mutex<Slot>>,
     trie: Mutex<Trie>,
     ledger: Mutex<Ledger>,
+    kept: Kept,
     budget: usize,
     /// A tile whose trees need more than this is not kept.
     tile_limit: usize,
@@ -262,7 +283,7 @@ impl<'a> Job<'a> {
         scene: &Scene,
         geometry: &'a Geometry,
         threads: usize,
-        budget: u64,
+        keep: Keep,
         reuse: Forest,
         progress: &'a Progress,
     ) -> Job<'a> {
@@ -275,8 +296,9 @@ impl<'a> Job<'a> {
         let mut old = reuse.tiles.into_iter();
         let slot = |_| Mutex::new(Slot { old: old.next().flatten(), ..Slot::default() });
         progress.begin(layout.tiles() as u64);
-        let budget = usize::try_from(budget).unwrap_or(usize::MAX);
+        let budget = usize::try_from(keep.bytes).unwrap_or(usize::MAX);
         Job {
+            kept: keep.what,
             grower: Grower::new(scene, geometry),
             layout,
             samples: scene.trace.samples,
@@ -307,7 +329,8 @@ impl<'a> Job<'a> {
             let transport = self.finish_tile(&mut folder);
             outcome.folding += folding.elapsed();
             // A clone takes no more memory than it needs.
-            let kept = whole.then(|| old.map_or_else(|| scratch.clone(), TileTrees::trimmed));
+            let kept = (whole && self.kept == Kept::Trees)
+                .then(|| old.map_or_else(|| scratch.clone(), TileTrees::trimmed));
             self.store(tile, kept, transport)?;
             self.progress.step();
         }
@@ -353,6 +376,9 @@ impl<'a> Job<'a> {
         let weight = 1.0 / self.samples as f32;
         let folded = folder.finish_tile(weight, &self.shininess);
         let mut tile = folded.tile;
+        if self.kept == Kept::Matrix {
+            tile.highlights = None;
+        }
         let mut global = vec![0u32; folded.trie.nodes().len()];
         let mut trie = self.trie.lock().expect("no worker panicked");
         for (id, node) in folded.trie.nodes().iter().enumerate().skip(1) {

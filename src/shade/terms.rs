@@ -56,6 +56,11 @@ impl TermProgram {
         }
     }
 
+    /// Ids of the terms at which the kept trees end.
+    pub fn frontier(&self) -> impl Iterator<Item = u32> {
+        self.frontier.iter().map(|f| f.id)
+    }
+
     /// Allocated bytes.
     pub fn bytes(&self) -> usize {
         let TermProgram { terms: _, factors, paths, products, frontier } = self;
@@ -133,6 +138,17 @@ impl TermValues {
             };
         }
     }
+}
+
+/// Whether the branch or shadow ray of one term of the frontier, given by its factors from the eye
+/// on, lives: what [`TermValues::uncovered`] asks of all of them.
+pub fn frontier_lives(factors: &[Factor], values: &FactorValues) -> bool {
+    let follow = |path: PathWeight, &factor: &Factor| match factor.kind() {
+        Kind::Shadow if values.value(factor).is_black() => None,
+        Kind::Shadow => Some(path),
+        _ => values.follow(path, factor).ok(),
+    };
+    factors.iter().try_fold(PathWeight::EYE, follow).is_some()
 }
 
 /// The fourth component only tells zero from not zero, and may be too large, never too small.
@@ -219,6 +235,26 @@ mod tests {
         assert!(uncovered(&scene).is_some());
         scene.trace.depth = 2;
         assert_eq!(uncovered(&scene), None);
+    }
+
+    #[test]
+    fn one_frontier_alone_lives_as_among_all() {
+        let program = TermProgram::new(&trie().0);
+        let ids: Vec<u32> = program.frontier().collect();
+        assert_eq!(ids.len(), 1);
+        let factors = trie().0.factors(ids[0]);
+        let mut both = [0, 0];
+        for (reflect, cutoff, depth) in
+            [(0.5, 0.2, 3), (0.5, 0.125, 3), (0.5, 0.125, 2), (0.0, 0.0, 64), (0.6, 0.2, 3)]
+        {
+            let mut scene = scene(reflect);
+            (scene.trace.cutoff, scene.trace.depth) = (cutoff, depth);
+            let values = FactorValues::new(&scene);
+            let lives = TermValues::default().uncovered(&program, &values).is_some();
+            assert_eq!(frontier_lives(&factors, &values), lives, "{reflect} {cutoff} {depth}");
+            both[usize::from(lives)] += 1;
+        }
+        assert_eq!(both, [3, 2]);
     }
 
     #[test]

@@ -1,14 +1,28 @@
 //! A session behind threads: the newest wanted scene wins, pictures arrive coarse first, nothing blocks.
 
+mod badges;
+mod board;
+mod export;
+mod shader;
+#[cfg(test)]
+mod tests;
+mod tracer;
+
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::mpsc::{Sender, channel};
+use std::thread::JoinHandle;
+
+use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::cost::Cost;
 use super::{EditReport, Options};
 use crate::film::Frame;
 use crate::film::write::Format;
 use crate::scene::Scene;
+use board::Board;
+use shader::{Message, Shader};
 
 /// How fine a picture is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -90,61 +104,129 @@ pub struct Picked {
 }
 
 /// A session that runs in threads of its own. All calls return at once.
-pub struct Live {}
+///
+/// One thread owns the pictures and shades, one traces, one writes files; the two that work hard
+/// have a pool each, so that shading never queues behind rays. A lock is held only to move pointers.
+/// Dropping it cancels what runs and waits for the threads.
+pub struct Live {
+    board: Arc<Board>,
+    orders: Sender<Message>,
+    threads: Vec<JoinHandle<()>>,
+}
 
 impl Live {
     /// Starts the threads. `wake` is called from them whenever there is something new.
-    pub fn new(_options: Options, _wake: impl Fn() + Send + Sync + 'static) -> Live {
-        todo!()
+    pub fn new(options: Options, wake: impl Fn() + Send + Sync + 'static) -> Live {
+        let board = Arc::new(Board::new(options.memory, Box::new(wake)));
+        let (orders, inbox) = channel();
+        let (traces, trace_tasks) = channel();
+        let (exports, export_tasks) = channel();
+        let shading = {
+            let board = board.clone();
+            move || Shader::new(options, board, inbox, traces, exports).run()
+        };
+        let (traced, exported) = (orders.clone(), orders.clone());
+        let threads = vec![
+            thread("shader", shading),
+            thread("tracer", move || tracer::run(options, trace_tasks, traced)),
+            thread("exporter", move || export::run(options, export_tasks, exported)),
+        ];
+        Live { board, orders, threads }
+    }
+
+    /// Sends an order. The shader receives until it is told to quit.
+    fn order(&self, message: Message) {
+        let _ = self.orders.send(message);
     }
 
     /// Makes `scene` the wanted one. A running trace goes on if the edit does not concern its rays.
-    pub fn want(&self, _scene: Arc<Scene>) {
-        todo!()
+    pub fn want(&self, scene: Arc<Scene>) {
+        self.order(Message::Want(scene));
     }
 
     /// The newest picture, if it is newer than the one taken before.
     pub fn take_shown(&self) -> Option<Shown> {
-        todo!()
+        self.board.take_shown()
     }
 
     /// What the threads are doing.
     pub fn status(&self) -> Status {
-        todo!()
+        self.board.status()
     }
 
     /// What has happened since the last call.
     pub fn take_events(&self) -> Vec<Event> {
-        todo!()
+        self.board.take_events()
     }
 
-    /// Stops the running trace or export. The last whole picture stays or comes back.
+    /// Stops the job that [`Live::status`] tells of. After a trace the last whole picture comes
+    /// back, and the wish is held: until it can be shown without rays, or another wish moves other
+    /// rays, or [`Live::resume`].
     pub fn cancel(&self) {
-        todo!()
+        let target = self.board.cancel();
+        self.order(Message::Cancel(target));
     }
 
     /// Traces the wanted scene after it was held.
     pub fn resume(&self) {
-        todo!()
+        self.order(Message::Resume);
     }
 
     /// Names the parameters whose costs are wanted from now on: those on the screen.
-    pub fn watch_costs(&self, _paths: Vec<String>) {
-        todo!()
+    pub fn watch_costs(&self, paths: Vec<String>) {
+        self.order(Message::Watch(paths));
     }
 
-    /// The newest known costs of the watched parameters, of the scene shown.
+    /// The newest known costs of the watched parameters, of the scene shown; empty while it is
+    /// traced, because only a whole picture knows them.
     pub fn costs(&self) -> Arc<BTreeMap<String, Cost>> {
-        todo!()
+        self.board.costs()
     }
 
     /// Writes a picture of the newest wanted scene, after its trace if that still runs.
-    pub fn export(&self, _export: Export) {
-        todo!()
+    ///
+    /// A picture of another size than the scene's is traced by itself, beside what is shown; it
+    /// pauses while the scene is traced or edited.
+    pub fn export(&self, export: Export) {
+        self.order(Message::Export(export));
     }
 
     /// What lies under a point of the picture shown, in pixels of `picture.size`.
-    pub fn pick(&self, _point: [f64; 2]) -> Option<Picked> {
-        todo!()
+    pub fn pick(&self, point: [f64; 2]) -> Option<Picked> {
+        self.board.eye()?.pick(point)
     }
+}
+
+impl Drop for Live {
+    fn drop(&mut self) {
+        self.board.cancel();
+        self.order(Message::Quit);
+        for thread in self.threads.drain(..) {
+            // What a thread may have died of was said when it happened.
+            let _ = thread.join();
+        }
+    }
+}
+
+fn thread(name: &str, body: impl FnOnce() + Send + 'static) -> JoinHandle<()> {
+    let builder = std::thread::Builder::new().name(name.to_owned());
+    builder.spawn(body).expect("the system gives a thread")
+}
+
+/// A pool of as many threads as the options say, or, where the system does not give them, of the
+/// calling thread alone.
+fn pool(options: Options) -> Arc<ThreadPool> {
+    let wanted = ThreadPoolBuilder::new().num_threads(options.threads.max(1)).build();
+    let alone = || ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
+    Arc::new(wanted.or_else(|_| alone()).expect("a pool without new threads"))
+}
+
+/// Runs a job that must not take its thread down: a panic becomes text.
+fn guarded<T>(job: impl FnOnce() -> T) -> Result<T, String> {
+    let caught = std::panic::catch_unwind(std::panic::AssertUnwindSafe(job));
+    caught.map_err(|cause| {
+        let text = cause.downcast_ref::<String>().map(String::as_str);
+        let text = text.or(cause.downcast_ref::<&str>().copied()).unwrap_or("unknown cause");
+        format!("an error in the program ({text}): save your work, and please report it")
+    })
 }

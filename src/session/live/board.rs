@@ -1,0 +1,142 @@
+//! What the threads show: pointers under one lock, which nobody holds for longer than a move.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use fearless_simd::{Level, dispatch};
+
+use super::{Event, Job, Picked, Shown, Status};
+use crate::forest::camera::View;
+use crate::geometry::{Geometry, Stack};
+use crate::progress::Progress;
+use crate::scene::Scene;
+use crate::session::cost::Cost;
+
+/// Written by the shader thread, read by the window's.
+pub(super) struct Board {
+    face: Mutex<Face>,
+    wake: Box<dyn Fn() + Send + Sync>,
+}
+
+#[derive(Default)]
+struct Face {
+    shown: Option<Shown>,
+    eye: Option<Eye>,
+    /// Without its job, whose steps are read when they are asked for.
+    status: Status,
+    work: Option<Work>,
+    events: Vec<Event>,
+    costs: Arc<BTreeMap<String, Cost>>,
+}
+
+/// The job that the status tells of.
+#[derive(Clone)]
+pub(super) struct Work {
+    pub(super) what: String,
+    pub(super) progress: Arc<Progress>,
+    pub(super) target: Target,
+}
+
+/// What a cancel stops.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Target {
+    Trace,
+    Export,
+}
+
+/// The scene shown, ready for single rays.
+#[derive(Clone)]
+pub(super) struct Eye {
+    pub(super) scene: Arc<Scene>,
+    pub(super) geometry: Arc<Geometry>,
+}
+
+impl Eye {
+    /// What the ray through a point of the picture meets first.
+    pub(super) fn pick(&self, [x, y]: [f64; 2]) -> Option<Picked> {
+        let size = self.scene.picture.size;
+        let [width, height] = size.map(f64::from);
+        if !((0.0..width).contains(&x) && (0.0..height).contains(&y)) {
+            return None;
+        }
+        let ray = View::new(&self.scene.camera, size).ray(x, y);
+        let mut stack = Stack::new(&self.geometry);
+        let hit = dispatch!(Level::new(), simd => {
+            self.geometry.closest_hit(simd, &mut stack, &ray, None)
+        })?;
+        let solid = self.geometry.solid(hit.primitive) as usize;
+        Some(Picked { solid, material: self.scene.solids[solid].material })
+    }
+}
+
+impl Board {
+    pub(super) fn new(budget: u64, wake: Box<dyn Fn() + Send + Sync>) -> Board {
+        let status = Status { budget, ..Status::default() };
+        Board { face: Mutex::new(Face { status, ..Face::default() }), wake }
+    }
+
+    fn face(&self) -> MutexGuard<'_, Face> {
+        self.face.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Tells the window that there is something new. No lock is held.
+    pub(super) fn wake(&self) {
+        (self.wake)();
+    }
+
+    pub(super) fn show(&self, shown: Shown, geometry: Arc<Geometry>) {
+        let eye = Eye { scene: shown.scene.clone(), geometry };
+        let mut face = self.face();
+        let old = (face.shown.replace(shown), face.eye.replace(eye));
+        drop(face);
+        // Memory is given back without the lock.
+        drop(old);
+    }
+
+    pub(super) fn report(&self, status: Status, work: Option<Work>) {
+        let mut face = self.face();
+        (face.status, face.work) = (status, work);
+    }
+
+    pub(super) fn tell(&self, event: Event) {
+        self.face().events.push(event);
+        self.wake();
+    }
+
+    pub(super) fn price(&self, costs: BTreeMap<String, Cost>) {
+        self.face().costs = Arc::new(costs);
+        self.wake();
+    }
+
+    /// Cancels the job that the status tells of, at once; gives what the rest of the cancel is for.
+    pub(super) fn cancel(&self) -> Target {
+        let work = self.face().work.clone();
+        work.map_or(Target::Trace, |work| {
+            work.progress.cancel();
+            work.target
+        })
+    }
+
+    pub(super) fn take_shown(&self) -> Option<Shown> {
+        self.face().shown.take()
+    }
+
+    pub(super) fn status(&self) -> Status {
+        let face = self.face();
+        let job = face.work.as_ref();
+        let job = job.map(|work| Job { what: work.what.clone(), steps: work.progress.steps() });
+        Status { job, ..face.status.clone() }
+    }
+
+    pub(super) fn take_events(&self) -> Vec<Event> {
+        std::mem::take(&mut self.face().events)
+    }
+
+    pub(super) fn costs(&self) -> Arc<BTreeMap<String, Cost>> {
+        self.face().costs.clone()
+    }
+
+    pub(super) fn eye(&self) -> Option<Eye> {
+        self.face().eye.clone()
+    }
+}

@@ -1,0 +1,550 @@
+//! The thread that owns the pictures: takes wishes, shades what needs no ray, sends off the rest.
+
+use std::collections::VecDeque;
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use rayon::ThreadPool;
+
+use super::badges::Badges;
+use super::board::{Board, Target, Work};
+use super::tracer::{self, Compiled, Control, Outcome, staged};
+use super::{Event, Export, Shown, Stage, Status, export, guarded, pool};
+use crate::forest::Forest;
+use crate::progress::Progress;
+use crate::scene::Scene;
+use crate::scene::change::Change;
+use crate::session::{Class, EditReport, Options, Session};
+
+/// What the shader is told, by the window and by the other threads.
+pub(super) enum Message {
+    Want(Arc<Scene>),
+    Cancel(Target),
+    Resume,
+    Watch(Vec<String>),
+    Export(Export),
+    /// A stage before the whole picture.
+    Staged {
+        id: u64,
+        stage: Stage,
+        divisor: u32,
+        session: Box<Session>,
+    },
+    /// A trace ended.
+    Ended {
+        id: u64,
+        outcome: Outcome,
+    },
+    /// The oldest export ended.
+    Exported(export::Outcome),
+    Quit,
+}
+
+/// How long a trace stays paused after an edit.
+const YIELD: Duration = Duration::from_millis(150);
+/// How often the window is told of a job's progress.
+const TICK: Duration = Duration::from_millis(50);
+/// A first stage that takes longer than this is not finished for its own sake.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+const UNTRACED: &str =
+    "the picture was not traced to its end: let it be traced, and export it again";
+
+/// Sessions before the whole one, and what they show.
+struct Preview {
+    session: Session,
+    stage: Stage,
+    divisor: u32,
+    /// The scene shown, at its full size.
+    scene: Arc<Scene>,
+}
+
+/// A trace that the tracer works on.
+struct Running {
+    id: u64,
+    scene: Arc<Scene>,
+    reason: String,
+    control: Arc<Control>,
+    reuse: Arc<Mutex<Option<Forest>>>,
+    taken: Instant,
+    /// Cancelled for the sake of another scene; otherwise a cancel was the person's.
+    dropped: bool,
+}
+
+impl Running {
+    /// Goes on if its rays are those of `wanted`.
+    fn consider(&mut self, wanted: &Scene) {
+        if Change::between(&self.scene, wanted).moves_rays.is_some() {
+            self.supersede();
+        } else {
+            self.control.superseded.store(false, Relaxed);
+        }
+    }
+
+    /// Another scene waits. A first stage is finished all the same, so that a camera that is
+    /// dragged without rest shows pictures.
+    fn supersede(&mut self) {
+        if self.control.past_first.load(Relaxed) || self.taken.elapsed() > PATIENCE {
+            self.drop_it();
+        } else {
+            self.control.superseded.store(true, Relaxed);
+        }
+    }
+
+    fn drop_it(&mut self) {
+        self.dropped = true;
+        self.control.progress.cancel();
+    }
+}
+
+/// A wish that is not traced.
+struct Hold {
+    scene: Arc<Scene>,
+    /// Its trace failed: any other scene is tried. A cancelled one waits for other rays.
+    failed: bool,
+}
+
+/// An export that was sent off.
+struct Pending {
+    what: String,
+    progress: Arc<Progress>,
+}
+
+pub(super) struct Shader {
+    options: Options,
+    board: Arc<Board>,
+    inbox: Receiver<Message>,
+    traces: Sender<tracer::Task>,
+    exporter: Sender<export::Task>,
+    pool: Arc<ThreadPool>,
+    wanted: Option<Arc<Scene>>,
+    whole: Option<Session>,
+    /// Shown instead of the whole picture while there is one.
+    preview: Option<Preview>,
+    job: Option<Running>,
+    jobs: u64,
+    hold: Option<Hold>,
+    last: Option<EditReport>,
+    /// Until when jobs leave the cores to edits.
+    busy_until: Option<Instant>,
+    /// Exports at the size of the picture, until it is whole.
+    waiting: Vec<Export>,
+    exports: VecDeque<Pending>,
+    badges: Badges,
+    /// The progress last told.
+    told: (u64, u64),
+}
+
+impl Shader {
+    /// To be run on the thread that it is for: the pool may be that thread.
+    pub(super) fn new(
+        options: Options,
+        board: Arc<Board>,
+        inbox: Receiver<Message>,
+        traces: Sender<tracer::Task>,
+        exporter: Sender<export::Task>,
+    ) -> Shader {
+        Shader {
+            options,
+            board,
+            inbox,
+            traces,
+            exporter,
+            pool: pool(options),
+            wanted: None,
+            whole: None,
+            preview: None,
+            job: None,
+            jobs: 0,
+            hold: None,
+            last: None,
+            busy_until: None,
+            waiting: Vec::new(),
+            exports: VecDeque::new(),
+            badges: Badges::default(),
+            told: (0, 0),
+        }
+    }
+
+    /// Works until it is told to quit.
+    pub(super) fn run(mut self) {
+        loop {
+            let messages = match self.inbox.recv_timeout(self.patience()) {
+                Ok(first) => newest_wish(std::iter::once(first).chain(self.inbox.try_iter())),
+                Err(RecvTimeoutError::Timeout) => Vec::new(),
+                Err(RecvTimeoutError::Disconnected) => break,
+            };
+            if messages.iter().any(|m| matches!(m, Message::Quit)) {
+                break;
+            }
+            if let Err(text) = guarded(|| self.turn(messages)) {
+                self.begin_anew(text);
+            }
+        }
+        self.job.iter().for_each(|job| job.control.progress.cancel());
+        self.exports.iter().for_each(|export| export.progress.cancel());
+    }
+
+    /// How long there is nothing to do, unless a message comes.
+    fn patience(&self) -> Duration {
+        let working = self.job.is_some() || !self.exports.is_empty();
+        let yielded = self.busy_until.map(|t| t.saturating_duration_since(Instant::now()));
+        let waits = [working.then_some(TICK), yielded, self.badges.wait()];
+        waits.into_iter().flatten().min().unwrap_or(Duration::from_secs(3600))
+    }
+
+    fn turn(&mut self, messages: Vec<Message>) {
+        let idle = messages.is_empty();
+        for message in messages {
+            self.handle(message);
+        }
+        self.send_waiting();
+        self.pace();
+        if !idle {
+            self.report();
+            self.board.wake();
+        } else if let Some(whole) = self.whole.as_ref().filter(|_| self.preview.is_none()) {
+            self.badges.work(whole, &self.board);
+        }
+        self.tell_progress();
+    }
+
+    fn handle(&mut self, message: Message) {
+        match message {
+            Message::Want(scene) => self.want(scene),
+            Message::Cancel(target) => self.cancel(target),
+            Message::Resume => self.resume(),
+            Message::Watch(paths) => self.badges.watch(paths),
+            Message::Export(export) => self.export(export),
+            Message::Staged { id, stage, divisor, session } => {
+                self.staged(id, stage, divisor, *session);
+            }
+            Message::Ended { id, outcome } => self.ended(id, outcome),
+            Message::Exported(outcome) => self.exported(outcome),
+            Message::Quit => {}
+        }
+    }
+
+    fn want(&mut self, scene: Arc<Scene>) {
+        let taken = Instant::now();
+        let same = |wanted: &Arc<Scene>| Arc::ptr_eq(wanted, &scene) || *wanted == scene;
+        if !self.wanted.as_ref().is_some_and(same) {
+            self.wanted = Some(scene);
+            self.settle(taken);
+        }
+    }
+
+    fn resume(&mut self) {
+        self.hold = None;
+        // A trace that still has to obey a cancel is followed by another one.
+        self.job
+            .iter_mut()
+            .filter(|job| job.control.progress.is_cancelled())
+            .for_each(Running::drop_it);
+        self.settle(Instant::now());
+    }
+
+    /// Brings the picture in step with the wanted scene, with the least work.
+    fn settle(&mut self, taken: Instant) {
+        let Some(wanted) = self.wanted.clone() else { return };
+        let Err(reason) = self.reach_whole(&wanted, taken) else { return };
+        self.reach_preview(&wanted, taken);
+        if let Some(job) = &mut self.job {
+            job.consider(&wanted);
+        } else if !self.is_held(&wanted) {
+            self.begin(wanted, reason, taken);
+        }
+    }
+
+    /// Edits and shows the whole picture if that needs no ray; a trace is then for nothing.
+    fn reach_whole(&mut self, wanted: &Arc<Scene>, taken: Instant) -> Result<(), String> {
+        let whole = self.whole.as_mut().ok_or("the scene is new")?;
+        let report = whole.edit_without_rays(wanted)?;
+        self.preview = None;
+        self.hold = None;
+        self.job.iter_mut().for_each(Running::drop_it);
+        self.edited(report, taken);
+        Ok(())
+    }
+
+    /// Edits and shows the preview, if there is one and that needs no ray.
+    fn reach_preview(&mut self, wanted: &Arc<Scene>, taken: Instant) {
+        let Some(preview) = &mut self.preview else { return };
+        let scene = Arc::new(staged(wanted, preview.stage, preview.divisor));
+        if let Ok(report) = preview.session.edit_without_rays(&scene) {
+            preview.scene = wanted.clone();
+            self.edited(report, taken);
+        }
+    }
+
+    /// Shows the result of an edit without rays.
+    fn edited(&mut self, mut report: EditReport, taken: Instant) {
+        report.milliseconds = taken.elapsed().as_secs_f64() * 1e3;
+        if report.class != Class::None {
+            self.busy_until = Some(Instant::now() + YIELD);
+        }
+        self.last = Some(report);
+        self.show();
+    }
+
+    /// Whether a scene that needs rays has to wait.
+    fn is_held(&mut self, wanted: &Scene) -> bool {
+        let held = self.hold.as_ref().is_some_and(|hold| match hold.failed {
+            true => *hold.scene == *wanted,
+            false => Change::between(&hold.scene, wanted).moves_rays.is_none(),
+        });
+        if !held {
+            self.hold = None;
+        }
+        held
+    }
+
+    /// Sends a scene to the tracer, which is free.
+    fn begin(&mut self, scene: Arc<Scene>, reason: String, taken: Instant) {
+        let known = self.whole.as_ref().map(compiled);
+        let trees = self.whole.as_mut().map(Session::take_trees);
+        let (control, reuse) = (Arc::<Control>::default(), Arc::new(Mutex::new(trees)));
+        self.jobs += 1;
+        let id = self.jobs;
+        let task = tracer::Task {
+            id,
+            scene: scene.clone(),
+            control: control.clone(),
+            known,
+            reuse: reuse.clone(),
+        };
+        self.traces.send(task).expect("the tracer lives as long as the shader");
+        self.job = Some(Running { id, scene, reason, control, reuse, taken, dropped: false });
+    }
+
+    /// Takes a picture before the whole one.
+    fn staged(&mut self, id: u64, stage: Stage, divisor: u32, mut session: Session) {
+        let Some(job) = self.job.as_mut().filter(|job| job.id == id && !job.dropped) else {
+            return;
+        };
+        if self.hold.is_some() && self.whole.is_some() {
+            return;
+        }
+        session.move_to(&self.pool);
+        let scene = job.scene.clone();
+        let wanted = self.wanted.clone().unwrap_or_else(|| scene.clone());
+        let newest = Arc::new(staged(&wanted, stage, divisor));
+        let reached = session.edit_without_rays(&newest).is_ok();
+        if Change::between(&scene, &wanted).moves_rays.is_some() {
+            job.drop_it();
+        }
+        let scene = if reached { wanted } else { scene };
+        self.preview = Some(Preview { session, stage, divisor, scene });
+        self.show();
+    }
+
+    fn ended(&mut self, id: u64, outcome: Outcome) {
+        let Some(job) = self.job.take_if(|job| job.id == id) else { return };
+        let unused = job.reuse.lock().unwrap_or_else(PoisonError::into_inner).take();
+        if let (Some(trees), Some(whole)) = (unused, &mut self.whole) {
+            whole.give_trees(trees);
+        }
+        match outcome {
+            Outcome::Whole(session) if !job.dropped && self.hold.is_none() => {
+                self.take_whole(*session, job);
+            }
+            Outcome::Cancelled if !job.dropped && self.hold.is_none() => self.put_on_hold(false),
+            Outcome::Failed(text) if !job.dropped => {
+                self.board.tell(Event::Failed(text));
+                self.put_on_hold(true);
+                self.hold = Some(Hold { scene: job.scene, failed: true });
+            }
+            _ => {}
+        }
+        self.settle(Instant::now());
+    }
+
+    /// Shows a whole picture, with the newest edits.
+    fn take_whole(&mut self, mut session: Session, job: Running) {
+        session.move_to(&self.pool);
+        let mut report = session.trace_edit(job.reason);
+        if let Some(wanted) = &self.wanted {
+            // What needs rays is traced next.
+            let _ = session.edit_without_rays(wanted);
+        }
+        report.milliseconds = job.taken.elapsed().as_secs_f64() * 1e3;
+        self.last = Some(report);
+        self.preview = None;
+        let old = self.whole.replace(session);
+        self.show();
+        drop(old);
+    }
+
+    /// The wanted scene is not traced; the last whole picture is shown again.
+    fn put_on_hold(&mut self, failed: bool) {
+        let Some(scene) = self.wanted.clone() else { return };
+        self.hold = Some(Hold { scene, failed });
+        if self.whole.is_some() && self.preview.take().is_some() {
+            self.show();
+        }
+        for export in std::mem::take(&mut self.waiting) {
+            self.refuse(&export, UNTRACED);
+        }
+    }
+
+    fn refuse(&self, export: &Export, cause: &str) {
+        let text = format!("{} was not written: {cause}", export.path.display());
+        self.board.tell(Event::Failed(text));
+    }
+
+    fn cancel(&mut self, target: Target) {
+        match (target, &self.job, self.exports.front()) {
+            (Target::Trace, Some(job), _) => {
+                job.control.progress.cancel();
+                self.put_on_hold(false);
+            }
+            (Target::Export, _, Some(export)) => export.progress.cancel(),
+            _ => {}
+        }
+    }
+
+    /// A panic left the pictures in an unknown state: nothing of them is kept.
+    fn begin_anew(&mut self, text: String) {
+        self.job.iter_mut().for_each(Running::drop_it);
+        (self.whole, self.preview) = (None, None);
+        let scene = self.wanted.clone();
+        self.hold = scene.map(|scene| Hold { scene, failed: true });
+        self.board.tell(Event::Failed(text));
+        self.report();
+        self.board.wake();
+    }
+
+    fn export(&mut self, export: Export) {
+        match &self.wanted {
+            Some(_) => self.waiting.push(export),
+            None => self.refuse(&export, "no scene is open"),
+        }
+    }
+
+    /// Sends off the exports that need not wait any more.
+    fn send_waiting(&mut self) {
+        let Some(wanted) = self.wanted.clone() else { return };
+        for export in std::mem::take(&mut self.waiting) {
+            let Export { path, format, size } = export.clone();
+            let progress = Arc::<Progress>::default();
+            let what = format!("exporting {}", path.display());
+            let task = if size != wanted.picture.size {
+                let (scene, known) =
+                    (export::Task::resized(&wanted, &export), self.whole.as_ref().map(compiled));
+                let progress = progress.clone();
+                export::Task::Render { path, format, scene, known, progress }
+            } else if let Some(whole) = self.whole.as_ref().filter(|_| self.in_step()) {
+                let (film, scene) = (whole.film(), whole.shared_scene());
+                export::Task::Write { path, format, film, scene }
+            } else if self.hold.is_some() {
+                self.refuse(&export, UNTRACED);
+                continue;
+            } else {
+                self.waiting.push(export);
+                continue;
+            };
+            self.exporter.send(task).expect("the exporter lives as long as the shader");
+            self.exports.push_back(Pending { what, progress });
+        }
+    }
+
+    fn exported(&mut self, outcome: export::Outcome) {
+        self.exports.pop_front();
+        match outcome {
+            Ok(Some(path)) => self.board.tell(Event::Exported(path)),
+            Ok(None) => {}
+            Err(text) => self.board.tell(Event::Failed(text)),
+        }
+    }
+
+    /// Lets jobs wait while edits come, and exports while a scene is traced. A first stage does not
+    /// wait: the picture after it is what edits are seen on.
+    fn pace(&mut self) {
+        self.busy_until = self.busy_until.filter(|t| *t > Instant::now());
+        let busy = self.busy_until.is_some();
+        if let Some(Running { control, .. }) = &self.job {
+            control.progress.pause(busy && control.past_first.load(Relaxed));
+        }
+        for export in &self.exports {
+            export.progress.pause(busy || self.job.is_some());
+        }
+    }
+
+    /// Whether the picture shown is whole and of the newest wanted scene.
+    fn in_step(&self) -> bool {
+        let shown = self.whole.as_ref().filter(|_| self.preview.is_none());
+        let wanted = self.wanted.as_ref();
+        shown.zip(wanted).is_some_and(|(whole, w)| Arc::ptr_eq(&whole.shared_scene(), w))
+    }
+
+    /// Hands the newest picture to the window.
+    fn show(&mut self) {
+        let (session, scene, stage) = match (&self.preview, &self.whole) {
+            (Some(p), _) => (&p.session, p.scene.clone(), p.stage),
+            (None, Some(whole)) => (whole, whole.shared_scene(), Stage::Whole),
+            (None, None) => return,
+        };
+        let shown = Shown { frame: session.shared_frame(), scene, stage };
+        self.board.show(shown, session.shared_geometry());
+        match stage {
+            Stage::Whole => self.badges.renew(),
+            _ => self.badges.withdraw(&self.board),
+        }
+        self.report();
+        self.board.wake();
+    }
+
+    /// Hands the newest status to the window.
+    fn report(&self) {
+        let shown = self.preview.as_ref().map(|p| &p.session).or(self.whole.as_ref());
+        let status = Status {
+            job: None,
+            last: self.last.clone(),
+            in_step: self.in_step(),
+            held: self.hold.is_some(),
+            bytes: self.whole.as_ref().or(shown).map_or(0, Session::kept_bytes),
+            budget: self.options.memory,
+        };
+        let trace = self.job.as_ref().filter(|job| !job.dropped).map(|job| Work {
+            what: format!("tracing: {}", job.reason),
+            progress: job.control.progress.clone(),
+            target: Target::Trace,
+        });
+        let export = || {
+            let Pending { what, progress } = self.exports.front()?;
+            let (what, progress) = (what.clone(), progress.clone());
+            Some(Work { what, progress, target: Target::Export })
+        };
+        self.board.report(status, trace.or_else(export));
+    }
+
+    /// Wakes the window if a job has come further.
+    fn tell_progress(&mut self) {
+        let trace = self.job.as_ref().map(|job| &job.control.progress);
+        let progress = trace.or(self.exports.front().map(|export| &export.progress));
+        let steps = progress.map_or((0, 0), |progress| progress.steps());
+        if std::mem::replace(&mut self.told, steps) != steps {
+            self.board.wake();
+        }
+    }
+}
+
+/// A session's geometry, with the scene that it was compiled of.
+fn compiled(session: &Session) -> Compiled {
+    Compiled(session.shared_scene(), session.shared_geometry())
+}
+
+/// The messages without wishes that newer ones follow.
+fn newest_wish(messages: impl Iterator<Item = Message>) -> Vec<Message> {
+    let mut messages: Vec<Message> = messages.collect();
+    let is_wish = |message: &Message| matches!(message, Message::Want(_));
+    let newest = messages.iter().rposition(is_wish);
+    let mut at = 0;
+    messages.retain(|message| {
+        at += 1;
+        !is_wish(message) || Some(at - 1) == newest
+    });
+    messages
+}

@@ -1,0 +1,234 @@
+//! The thread that traces: one scene at a time, coarse first.
+
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::mpsc::{Receiver, Sender};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
+
+use rayon::ThreadPool;
+
+use super::shader::Message;
+use super::{Stage, guarded, pool};
+use crate::forest::Forest;
+use crate::geometry::Geometry;
+use crate::progress::{Cancelled, Progress};
+use crate::scene::Scene;
+use crate::scene::change::Change;
+use crate::session::trace::{Kept, TraceError};
+use crate::session::{Options, Session, Start};
+
+/// A scene to trace.
+pub(super) struct Task {
+    pub(super) id: u64,
+    pub(super) scene: Arc<Scene>,
+    pub(super) control: Arc<Control>,
+    /// A scene with its geometry, which may serve.
+    pub(super) known: Option<Compiled>,
+    /// Trees whose memory the whole picture fills anew; what is left there afterwards was not
+    /// touched.
+    pub(super) reuse: Arc<Mutex<Option<Forest>>>,
+}
+
+/// A scene and what was compiled of its solids.
+#[derive(Clone)]
+pub(super) struct Compiled(pub(super) Arc<Scene>, pub(super) Arc<Geometry>);
+
+impl Compiled {
+    /// The geometry, if it is also that of `scene`.
+    pub(super) fn of(&self, scene: &Scene) -> Option<Arc<Geometry>> {
+        (!Change::between(&self.0, scene).geometry).then(|| self.1.clone())
+    }
+}
+
+/// How the shader steers a running trace.
+#[derive(Default)]
+pub(super) struct Control {
+    pub(super) progress: Arc<Progress>,
+    /// Another scene waits: the first stage is finished, the others are not begun.
+    pub(super) superseded: AtomicBool,
+    /// Set by the tracer when the first stage was handed over.
+    pub(super) past_first: AtomicBool,
+}
+
+/// How a trace ended.
+pub(super) enum Outcome {
+    /// With the whole picture.
+    Whole(Box<Session>),
+    /// After its first stage, because another scene waits.
+    Superseded,
+    /// By a cancel.
+    Cancelled,
+    /// What went wrong.
+    Failed(String),
+}
+
+/// Works until nobody sends tasks any more.
+pub(super) fn run(options: Options, tasks: Receiver<Task>, results: Sender<Message>) {
+    let mut tracer =
+        Tracer { options, pool: pool(options), results, latest: None, divisor: FIRST_DIVISOR };
+    for task in tasks {
+        let outcome = match guarded(|| tracer.trace(&task)) {
+            Ok(Ok(Some(session))) => Outcome::Whole(Box::new(session)),
+            Ok(Ok(None)) => Outcome::Superseded,
+            Ok(Err(TraceError::Cancelled)) => Outcome::Cancelled,
+            Ok(Err(error)) => Outcome::Failed(format!("the scene was not traced: {error}")),
+            Err(text) => Outcome::Failed(format!("the scene was not traced: {text}")),
+        };
+        // Nobody receives once the shader has ended.
+        let _ = tracer.results.send(Message::Ended { id: task.id, outcome });
+    }
+}
+
+/// Of the first coarse picture, while nothing is known of the machine and the scene.
+const FIRST_DIVISOR: f64 = 4.0;
+const LARGEST_DIVISOR: f64 = 16.0;
+/// What a coarse picture should take: a dragged camera shows fifteen a second.
+const COARSE_SECONDS: f64 = 0.065;
+/// Scenes of fewer camera rays are traced whole at once.
+const TINY_RAYS: u64 = 1 << 15;
+/// With fewer samples a picture of one sample is no quicker than the whole one.
+const FEW_SAMPLES: u32 = 4;
+
+struct Tracer {
+    options: Options,
+    pool: Arc<ThreadPool>,
+    results: Sender<Message>,
+    /// What was compiled last.
+    latest: Option<Compiled>,
+    /// Of a coarse picture that takes [`COARSE_SECONDS`].
+    divisor: f64,
+}
+
+impl Tracer {
+    /// The whole picture, or `None` if another scene waits.
+    fn trace(&mut self, task: &Task) -> Result<Option<Session>, TraceError> {
+        let Task { id, scene, control, known: _, reuse } = task;
+        let geometry = self.geometry(task)?;
+        let divisor = self.divisor.round() as u32;
+        for (number, stage) in stages(scene, divisor).into_iter().enumerate() {
+            let whole = stage == Stage::Whole;
+            let taken = || reuse.lock().unwrap_or_else(PoisonError::into_inner).take();
+            let start = Start {
+                scene: if whole { scene.clone() } else { Arc::new(staged(scene, stage, divisor)) },
+                geometry: geometry.clone(),
+                pool: self.pool.clone(),
+                options: self.options,
+                kept: if whole { Kept::Trees } else { Kept::Lists },
+                reuse: if whole { taken().unwrap_or_default() } else { Forest::default() },
+            };
+            let begun = Instant::now();
+            let session = Session::begin(start, &control.progress)?;
+            if number == 0 {
+                self.adapt(scene, stage, divisor, begun.elapsed().as_secs_f64());
+            }
+            if whole {
+                return Ok(Some(session));
+            }
+            let session = Box::new(session);
+            let _ = self.results.send(Message::Staged { id: *id, stage, divisor, session });
+            control.past_first.store(true, Relaxed);
+            if control.superseded.load(Relaxed) {
+                return Ok(None);
+            }
+        }
+        Ok(None)
+    }
+
+    /// The geometry of a scene, compiled only if no known one fits.
+    fn geometry(&mut self, task: &Task) -> Result<Arc<Geometry>, Cancelled> {
+        let mut known = self.latest.iter().chain(&task.known);
+        if let Some(geometry) = known.find_map(|compiled| compiled.of(&task.scene)) {
+            return Ok(geometry);
+        }
+        let geometry = Arc::new(Geometry::build(&task.scene, &task.control.progress)?);
+        self.latest = Some(Compiled(task.scene.clone(), geometry.clone()));
+        Ok(geometry)
+    }
+
+    /// Learns from the time of a first stage how coarse the next one must be.
+    fn adapt(&mut self, scene: &Scene, stage: Stage, divisor: u32, seconds: f64) {
+        let (side, samples) = match stage {
+            Stage::Coarse => (divisor, 1),
+            Stage::OneSample => (1, 1),
+            Stage::Whole => (1, scene.trace.samples),
+        };
+        let seconds = seconds / f64::from(samples);
+        let fitting = f64::from(side) * (seconds / COARSE_SECONDS).sqrt();
+        self.divisor = fitting.clamp(1.0, LARGEST_DIVISOR);
+    }
+}
+
+/// The stages in which a scene is traced: those before the whole picture that are much quicker.
+fn stages(scene: &Scene, divisor: u32) -> Vec<Stage> {
+    let [width, height] = scene.picture.size.map(u64::from);
+    let rays = width * height * u64::from(scene.trace.samples);
+    let mut stages = Vec::new();
+    if rays >= TINY_RAYS && divisor > 1 {
+        stages.push(Stage::Coarse);
+    }
+    if rays >= TINY_RAYS && scene.trace.samples >= FEW_SAMPLES {
+        stages.push(Stage::OneSample);
+    }
+    stages.push(Stage::Whole);
+    stages
+}
+
+/// The scene as a stage shows it.
+pub(super) fn staged(scene: &Scene, stage: Stage, divisor: u32) -> Scene {
+    let mut staged = scene.clone();
+    if stage < Stage::Whole {
+        staged.trace.samples = 1;
+    }
+    if stage == Stage::Coarse {
+        staged.picture.size = scene.picture.size.map(|side| (side / divisor).max(1));
+    }
+    staged
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Stage::{Coarse, OneSample, Whole};
+
+    fn scene(size: [u32; 2], samples: u32) -> Scene {
+        let mut scene = Scene::default();
+        (scene.picture.size, scene.trace.samples) = (size, samples);
+        scene
+    }
+
+    #[test]
+    fn stages_that_would_not_help_are_left_out() {
+        let at = |size, samples, divisor| stages(&scene(size, samples), divisor);
+        assert_eq!(at([1280, 720], 16, 4), [Coarse, OneSample, Whole]);
+        assert_eq!(at([1280, 720], 1, 4), [Coarse, Whole]);
+        assert_eq!(at([1280, 720], 16, 1), [OneSample, Whole]);
+        assert_eq!(at([48, 32], 16, 4), [Whole]);
+    }
+
+    #[test]
+    fn a_stage_shows_the_same_scene_with_fewer_rays() {
+        let fine = scene([101, 3], 16);
+        let coarse = staged(&fine, Coarse, 4);
+        assert_eq!((coarse.picture.size, coarse.trace.samples), ([25, 1], 1));
+        let one = staged(&fine, OneSample, 4);
+        assert_eq!((one.picture.size, one.trace.samples), ([101, 3], 1));
+        assert_eq!(staged(&fine, Whole, 4), fine);
+    }
+
+    #[test]
+    fn the_divisor_follows_the_time_of_the_first_stage() {
+        let options = Options { threads: 1, memory: 1 << 30 };
+        let (results, _inbox) = std::sync::mpsc::channel();
+        let mut tracer =
+            Tracer { options, pool: pool(options), results, latest: None, divisor: FIRST_DIVISOR };
+        let scene = scene([1280, 720], 16);
+        tracer.adapt(&scene, Coarse, 4, 4.0 * COARSE_SECONDS);
+        assert_eq!(tracer.divisor, 8.0);
+        tracer.adapt(&scene, Coarse, 8, COARSE_SECONDS / 16.0);
+        assert_eq!(tracer.divisor, 2.0);
+        tracer.adapt(&scene, OneSample, 9, 9.0 * COARSE_SECONDS);
+        assert_eq!(tracer.divisor, 3.0);
+        tracer.adapt(&scene, Whole, 9, 16.0 * COARSE_SECONDS);
+        assert_eq!(tracer.divisor, 1.0);
+    }
+}
