@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::render::edit_line;
 use super::watch::watched;
 use super::{Failure, print, read_scene, say};
+use crate::document::BUILT_IN;
 use crate::film::write::{Format, check_writable, picture};
 use crate::scene::path::set;
 use crate::scene::{Scene, read, write};
@@ -13,13 +14,10 @@ use crate::session::{Options, Session};
 /// Where the first picture goes: into the present folder.
 pub(super) const PICTURE: &str = "rayforest.png";
 
-/// The scene that is always there.
-const BUILT_IN: &str = include_str!("../../scenes/whitted.toml");
-
 pub(crate) fn run(file: Option<&Path>) -> Result<(), Failure> {
     let scene = match file {
         Some(file) => read_scene(file)?,
-        None => read::text(BUILT_IN, Path::new("whitted.toml")).map_err(Failure::input)?,
+        None => read::text(BUILT_IN.1, Path::new("whitted.toml")).map_err(Failure::input)?,
     };
     check_writable(Path::new(PICTURE)).map_err(Failure::job)?;
     let opened = watched("tracing", |p| Session::open(scene, Options::default(), p));

@@ -1,135 +1,213 @@
 //! The work of a person: a scene, its file, its history of edits, and what keeps it from being lost.
 
+mod history;
+mod open;
+mod outline;
+mod patch;
 pub mod recovery;
+mod relocate;
+mod save;
 pub mod settings;
+mod splice;
+mod step;
+#[cfg(test)]
+mod tests_patch;
 
+use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+pub use save::Save;
 
 use crate::scene::Scene;
+use crate::scene::check::validate;
+use history::{History, same_bits};
+use patch::patch;
+use relocate::{relocate, resolved};
+use save::file_name;
 
 /// A scene being edited, with its file and its history.
-pub struct Document {}
+pub struct Document {
+    /// For the title bar, as long as there is no file.
+    name: String,
+    /// Absolute.
+    path: Option<PathBuf>,
+    base: Base,
+    /// The scene as opened or saved last.
+    saved: Arc<Scene>,
+    /// What the file held when it was opened or saved last.
+    disk: Option<Arc<str>>,
+    history: History,
+    /// Whether it was found after a crash and the scene of its file is not known.
+    is_rescued: bool,
+    is_unsaved: bool,
+}
+
+/// A text with the comments to keep, and the scene that it reads as.
+#[derive(Clone)]
+struct Base {
+    text: Arc<str>,
+    scene: Arc<Scene>,
+}
 
 /// A scene that could not be opened or saved: the place, the cause, and the way out.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct DocumentError {
     /// Several lines, for the person.
     pub message: String,
     /// A mesh file that was not found, as written in the scene: the person may locate it.
     pub missing: Option<String>,
+    /// The file was changed by another program: [`Save::overwrite`] replaces it all the same.
+    pub changed_on_disk: bool,
 }
 
-/// Text on its way to a file: plain data, written by any thread.
-#[derive(Clone, Debug)]
-pub struct Save {
-    /// The file.
-    pub path: PathBuf,
-    /// What it will hold.
-    pub text: String,
+impl DocumentError {
+    fn new(message: impl fmt::Display) -> DocumentError {
+        DocumentError { message: message.to_string(), ..DocumentError::default() }
+    }
 }
+
+impl fmt::Display for DocumentError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for DocumentError {}
+
+/// The scene that is always there: name and text.
+pub const BUILT_IN: (&str, &str) = ("Whitted's spheres", include_str!("../../scenes/whitted.toml"));
 
 /// Scenes to begin with: name and text.
-pub const TEMPLATES: &[(&str, &str)] = &[];
+pub const TEMPLATES: &[(&str, &str)] = &[
+    ("Empty stage", include_str!("templates/stage.toml")),
+    ("Glass on a table", include_str!("templates/glass.toml")),
+    ("Material ball", include_str!("templates/ball.toml")),
+];
+
+/// The first thing wrong with `after` that is not wrong with `before`, with a way out.
+pub fn flaw(before: &Scene, after: &Scene) -> Option<String> {
+    let flaws = validate(after);
+    if flaws.is_empty() {
+        return None;
+    }
+    let known = validate(before);
+    let new = flaws.into_iter().find(|flaw| !known.contains(flaw))?;
+    Some(format!("{}: {}\n  help: {}", new.path.join("."), new.message, new.help))
+}
 
 impl Document {
-    /// A document without a file, from a template or the built-in scene.
-    pub fn untitled(_name: &str, _text: &str) -> Result<Document, DocumentError> {
-        todo!()
-    }
-
     /// The built-in scene.
     pub fn built_in() -> Document {
-        todo!()
-    }
-
-    /// Opens a scene file.
-    pub fn open(_path: &Path) -> Result<Document, DocumentError> {
-        todo!()
-    }
-
-    /// Opens a scene file with a mesh file replaced: the text, so edited, counts as unsaved.
-    pub fn open_with(
-        _path: &Path,
-        _missing: &str,
-        _found: &Path,
-    ) -> Result<Document, DocumentError> {
-        todo!()
+        let (name, text) = BUILT_IN;
+        Document::untitled(name, text).expect("the built-in scene has no mistakes")
     }
 
     /// The scene as edited.
     pub fn scene(&self) -> &Scene {
-        todo!()
+        self.history.scene()
     }
 
     /// Takes an edited scene; edits of one gesture, until [`Document::end_gesture`], are one step.
-    pub fn change(&mut self, _scene: Scene) {
-        todo!()
+    /// It must be valid: see [`flaw`].
+    pub fn change(&mut self, scene: Scene) {
+        self.history.change(scene);
+        self.refresh();
     }
 
     /// Ends a gesture: the next change begins a new step.
     pub fn end_gesture(&mut self) {
-        todo!()
+        self.history.end_gesture();
     }
 
     /// Takes the latest step back; whether there was one.
     pub fn undo(&mut self) -> bool {
-        todo!()
+        let is_done = self.history.undo();
+        self.refresh();
+        is_done
     }
 
     /// Does the step again that was taken back last; whether there was one.
     pub fn redo(&mut self) -> bool {
-        todo!()
+        let is_done = self.history.redo();
+        self.refresh();
+        is_done
     }
 
     /// Name of the step that [`Document::undo`] would take back, such as `diffuse of tiles 0.70 → 0.42`.
     pub fn undo_name(&self) -> Option<&str> {
-        todo!()
+        self.history.undo_name()
     }
 
     /// Name of the step that [`Document::redo`] would do.
     pub fn redo_name(&self) -> Option<&str> {
-        todo!()
+        self.history.redo_name()
     }
 
-    /// Its file, if it has one.
+    /// Its file, if it has one; absolute.
     pub fn path(&self) -> Option<&Path> {
-        todo!()
+        self.path.as_deref()
     }
 
     /// For the title bar: the file's name or the template's.
     pub fn title(&self) -> String {
-        todo!()
+        self.path.as_deref().map_or_else(|| self.name.clone(), file_name)
     }
 
     /// Whether the scene differs from its file.
     pub fn is_unsaved(&self) -> bool {
-        todo!()
+        self.is_unsaved
     }
 
     /// The scene as it was opened or last saved, for marks beside changed values.
     pub fn saved_scene(&self) -> &Scene {
-        todo!()
+        &self.saved
     }
 
-    /// What saving to `path` would write; comments and order of the present text stay.
-    pub fn save(&self, _path: &Path) -> Result<Save, DocumentError> {
-        todo!()
+    /// What saving to `path` would write; comments and order of the present text stay. Mesh files
+    /// are named from the folder of `path`.
+    pub fn save(&self, path: &Path) -> Result<Save, DocumentError> {
+        let path = std::path::absolute(path).map_err(DocumentError::new)?;
+        let mut scene = self.scene().clone();
+        relocate(&mut scene, &self.folder(), folder_of(&path));
+        let patched = patch(&self.base.text, &self.base.scene, &scene);
+        let is_own = self.path.as_deref().is_some_and(|own| resolved(own) == resolved(&path));
+        Ok(Save {
+            path,
+            text: patched.text,
+            comments_lost: patched.comments_lost,
+            overwrite: false,
+            scene: Arc::new(scene),
+            expected: self.disk.clone().filter(|_| is_own),
+        })
     }
 
     /// `save` was written: the document now belongs to that file. Edits made since stay unsaved.
-    pub fn saved(&mut self, _save: Save) {
-        todo!()
+    pub fn saved(&mut self, save: Save) {
+        let (from, to) = (self.folder(), folder_of(&save.path).to_owned());
+        if resolved(&from) != resolved(&to) {
+            self.history.edit_all(&mut |scene| relocate(scene, &from, &to));
+        }
+        let text: Arc<str> = save.text.into();
+        self.disk = Some(Arc::clone(&text));
+        self.saved = Arc::clone(&save.scene);
+        self.base = Base { text, scene: save.scene };
+        self.path = Some(save.path);
+        self.is_rescued = false;
+        self.refresh();
+    }
+
+    /// The folder that mesh files are relative to.
+    fn folder(&self) -> PathBuf {
+        self.path.as_deref().map_or_else(|| PathBuf::from("."), |path| folder_of(path).to_owned())
+    }
+
+    /// Compares with the file, once an edit rather than once a frame.
+    fn refresh(&mut self) {
+        self.is_unsaved = self.is_rescued || !same_bits(self.history.scene(), &self.saved);
     }
 }
 
-/// What makes an edited scene useless that was useful before, if anything does.
-pub fn flaw(_before: &Scene, _after: &Scene) -> Option<String> {
-    todo!()
-}
-
-impl Save {
-    /// Writes the file, whole or not at all; the file before it becomes `NAME~`.
-    pub fn write(&self) -> Result<(), DocumentError> {
-        todo!()
-    }
+fn folder_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
 }

@@ -80,6 +80,24 @@ pub fn atomically(
     Ok(())
 }
 
+/// [`atomically`] for what nobody can compute again: it is on the disc before it replaces the file
+/// before it, and from its first byte has `permissions`, if they are given.
+pub fn durably(
+    path: &Path,
+    permissions: Option<std::fs::Permissions>,
+    bytes: &[u8],
+) -> Result<(), WriteError> {
+    let fail = |error: std::io::Error| WriteError { path: path.into(), cause: error.to_string() };
+    let mut file = beside(path)?;
+    if let Some(permissions) = permissions {
+        file.as_file().set_permissions(permissions).map_err(fail)?;
+    }
+    file.write_all(bytes).map_err(fail)?;
+    file.as_file().sync_all().map_err(fail)?;
+    file.persist(path).map_err(|e| fail(e.error))?;
+    Ok(())
+}
+
 /// Whether a file can be written there: asked before a long job, so that its result is not lost.
 pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     beside(path).map(drop)

@@ -19,7 +19,7 @@ pub mod range;
 pub mod read;
 mod reader;
 pub mod slot;
-mod toml_text;
+pub(crate) mod toml_text;
 pub mod value;
 pub mod write;
 

@@ -1,12 +1,14 @@
 //! Reads scene text; every mistake is reported with its place and a way out.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
+use std::sync::Arc;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::fields::{LENSES, PAINTS, PLACES, SHAPES};
+use super::mesh::Mesh;
 use super::problem::{Mistake, Problem, SceneError};
 use super::reader;
 use super::{Lens, Light, LightPlace, Material, Paint, Scene, Shape, Solid};
@@ -22,8 +24,26 @@ pub fn file(path: &Path) -> Result<Scene, SceneError> {
         }],
         left_out: 0,
     })?;
-    match str::from_utf8(&bytes) {
-        Ok(source) => text(source, path),
+    self::bytes(&bytes, path, Meshes::new())
+}
+
+/// Mesh files that need not be read again, by their names in the scene.
+pub type Meshes = HashMap<String, Arc<Mesh>>;
+
+/// The mesh files that a scene holds.
+pub fn meshes(scene: &Scene) -> Meshes {
+    let mesh = |solid: &Solid| match &solid.shape {
+        Shape::Mesh { file, mesh } => Some((file.clone(), Arc::clone(mesh))),
+        _ => None,
+    };
+    scene.solids.iter().filter_map(mesh).collect()
+}
+
+/// Reads what a scene file held; `path` is named in errors, and mesh files that are not in `known`
+/// are sought beside it.
+pub fn bytes(bytes: &[u8], path: &Path, known: Meshes) -> Result<Scene, SceneError> {
+    match str::from_utf8(bytes) {
+        Ok(source) => text_with(source, path, known),
         Err(error) => {
             let start = error.valid_up_to();
             let mistake = Mistake {
@@ -31,7 +51,7 @@ pub fn file(path: &Path) -> Result<Scene, SceneError> {
                 message: "this is not UTF-8 text".to_owned(),
                 help: "save the file in UTF-8".to_owned(),
             };
-            let source = String::from_utf8_lossy(&bytes);
+            let source = String::from_utf8_lossy(bytes);
             Err(SceneError::new(path.to_owned(), &source, vec![mistake]))
         }
     }
@@ -39,6 +59,11 @@ pub fn file(path: &Path) -> Result<Scene, SceneError> {
 
 /// Reads scene text; `file` is named in errors, and mesh files are sought beside it.
 pub fn text(source: &str, file: &Path) -> Result<Scene, SceneError> {
+    text_with(source, file, Meshes::new())
+}
+
+/// [`text`] with some mesh files at hand.
+pub fn text_with(source: &str, file: &Path, known: Meshes) -> Result<Scene, SceneError> {
     let source = source.strip_prefix('\u{feff}').unwrap_or(source);
     let (root, errors) = DeTable::parse_recoverable(source);
     if !errors.is_empty() {
@@ -47,7 +72,7 @@ pub fn text(source: &str, file: &Path) -> Result<Scene, SceneError> {
     let root = root.get_ref();
     let mut scene = skeleton(root);
     let folder = file.parent().unwrap_or(Path::new(""));
-    let mistakes = reader::fill(&mut scene, root, folder);
+    let mistakes = reader::fill(&mut scene, root, folder, known);
     if mistakes.is_empty() {
         Ok(scene)
     } else {

@@ -1,6 +1,6 @@
 //! Fills the fields of a scene from a TOML table, noting every mistake on the way.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -12,6 +12,7 @@ use super::check;
 use super::fields::{self, Need, Visit};
 use super::mesh::{self, Mesh};
 use super::problem::{Mistake, Span, suggestion};
+use super::read::Meshes;
 use super::slot::Slot;
 use super::toml_text::{bare_or_quoted, quoted};
 use super::value::{Names, describe};
@@ -21,12 +22,18 @@ use super::write;
 const VERSION: &str = "1";
 
 /// Fills `scene`, which has the names and variants of `root`; returns the mistakes in any order.
-pub(super) fn fill<'a>(scene: &mut Scene, root: &'a DeTable<'a>, folder: &'a Path) -> Vec<Mistake> {
+/// Mesh files are sought in `folder`, unless they are among `meshes`.
+pub(super) fn fill<'a>(
+    scene: &mut Scene,
+    root: &'a DeTable<'a>,
+    folder: &'a Path,
+    meshes: Meshes,
+) -> Vec<Mistake> {
     let mut reader = Reader {
         scopes: vec![Scope { key: None, span: 0..0, table: Some(root), known: Vec::new() }],
         names: Names::of(&scene.materials),
         folder,
-        meshes: HashMap::new(),
+        meshes,
         mistakes: Vec::new(),
         broken: HashSet::new(),
     };
@@ -54,7 +61,7 @@ struct Reader<'a> {
     scopes: Vec<Scope<'a>>,
     names: Names,
     folder: &'a Path,
-    meshes: HashMap<String, Arc<Mesh>>,
+    meshes: Meshes,
     mistakes: Vec<Mistake>,
     /// Tables with a mistake, by one or two keys; their relations are not checked.
     broken: HashSet<Vec<String>>,

@@ -12,9 +12,8 @@ use super::{Light, Material, Scene, Shape, Solid};
 ///
 /// `read::text` gives back the same scene bit for bit, if it can find the same mesh files.
 pub fn text(scene: &Scene) -> String {
-    let names = Names::of(&scene.materials);
-    let nodes = nodes(&names, &mut |v| fields::scene(&mut scene.clone(), v));
-    let defaults = Defaults::new(&names);
+    let nodes = tree(scene);
+    let defaults = Defaults::new(&Names::of(&scene.materials));
     let mut out = "version = 1\n".to_owned();
     for node in &nodes {
         if let Content::Value(value) = &node.content
@@ -41,8 +40,15 @@ pub fn inline(names: &Names, body: &mut dyn FnMut(&mut dyn Visit)) -> String {
     line(&nodes(names, body))
 }
 
-/// Writes `[path]` and the lines below it.
-fn table(path: &[&str], node: &Node, defaults: &Defaults, out: &mut String) {
+/// Every value and table of a scene. Two scenes with equal trees are the same to the last bit, but for
+/// what their mesh files held.
+pub(crate) fn tree(scene: &Scene) -> Vec<Node> {
+    let names = Names::of(&scene.materials);
+    nodes(&names, &mut |v| fields::scene(&mut scene.clone(), v))
+}
+
+/// Writes an empty line, `[path]` and the lines below it.
+pub(crate) fn table(path: &[&str], node: &Node, defaults: &Defaults, out: &mut String) {
     let header: Vec<String> = path.iter().map(|key| bare_or_quoted(key)).collect();
     out.push_str(&format!("\n[{}]\n", header.join(".")));
     let Content::Table(children) = &node.content else { return };
@@ -52,19 +58,23 @@ fn table(path: &[&str], node: &Node, defaults: &Defaults, out: &mut String) {
 }
 
 /// A visited value or table.
-struct Node {
-    key: String,
-    need: Need,
-    content: Content,
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Node {
+    pub(crate) key: String,
+    pub(crate) need: Need,
+    pub(crate) content: Content,
 }
 
-enum Content {
+/// What a [`Node`] holds; a value is TOML.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Content {
     Value(String),
     Table(Vec<Node>),
 }
 
 impl Node {
-    fn inline(&self) -> String {
+    /// What stands behind the key; a table is written inline and whole.
+    pub(crate) fn inline(&self) -> String {
         match &self.content {
             Content::Value(value) => value.clone(),
             Content::Table(children) => format!("{{ {} }}", line(children)),
@@ -83,7 +93,8 @@ struct Collect<'a> {
     nodes: Vec<Node>,
 }
 
-fn nodes(names: &Names, body: &mut dyn FnMut(&mut dyn Visit)) -> Vec<Node> {
+/// What `body` visits.
+pub(crate) fn nodes(names: &Names, body: &mut dyn FnMut(&mut dyn Visit)) -> Vec<Node> {
     let mut collect = Collect { names, nodes: Vec::new() };
     body(&mut collect);
     collect.nodes
@@ -102,10 +113,10 @@ impl Visit for Collect<'_> {
 }
 
 /// The text of every default value, by table and key; the table of a named thing is its list.
-struct Defaults(HashMap<(String, String), String>);
+pub(crate) struct Defaults(HashMap<(String, String), String>);
 
 impl Defaults {
-    fn new(names: &Names) -> Defaults {
+    pub(crate) fn new(names: &Names) -> Defaults {
         let mut blank = Scene {
             lights: vec![Light::new("")],
             materials: vec![Material::new("")],
@@ -134,7 +145,7 @@ impl Defaults {
     }
 
     /// Whether `node` in the table `path` must be written.
-    fn asks_for(&self, path: &[&str], node: &Node) -> bool {
+    pub(crate) fn asks_for(&self, path: &[&str], node: &Node) -> bool {
         let table = path.first().map_or(String::new(), |key| (*key).to_owned());
         let default = self.0.get(&(table, node.key.clone()));
         node.need.must_be_written() || default != Some(&node.inline())

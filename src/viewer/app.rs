@@ -59,7 +59,13 @@ impl App {
         }
         style::apply(ctx, &settings);
         let (recovery, found) = match Recovery::start(&setup.folders.recovery) {
-            Ok((recovery, found)) => (Some(recovery), found),
+            Ok((recovery, found)) => {
+                for file in recovery.damaged() {
+                    let file = file.display();
+                    notices.error(format!("unsaved work in {file} cannot be read; it is kept"));
+                }
+                (Some(recovery), found)
+            }
             Err(error) => {
                 notices.error(format!("unsaved work cannot be kept: {}", error.message));
                 (None, Vec::new())

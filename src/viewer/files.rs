@@ -56,6 +56,8 @@ pub(super) enum Modal {
     Path(PathField, For),
     /// A scene that could not be opened; the second part names a mesh that may be located.
     BadScene { path: PathBuf, message: String, missing: Option<String> },
+    /// The file to be replaced was changed by another program.
+    Changed { save: Save, message: String, next: Option<Next> },
     /// Work of a run that ended without saving it.
     Recover(Vec<Found>),
 }
@@ -196,7 +198,7 @@ impl App {
         }
     }
 
-    fn ask_save(&mut self, ctx: &Context, next: Option<Next>) {
+    pub(super) fn ask_save(&mut self, ctx: &Context, next: Option<Next>) {
         let name = format!("{}.toml", self.document.title().trim_end_matches(".toml"));
         self.ask(ctx, Purpose::Save, name, For::Save(next));
     }
@@ -204,12 +206,17 @@ impl App {
     fn save_to(&mut self, ctx: &Context, path: &Path, next: Option<Next>) {
         self.document.end_gesture();
         match self.document.save(path) {
-            Ok(save) => self.files.work(ctx, move || {
-                let result = save.write();
-                Done::Saved { save, result, next }
-            }),
+            Ok(save) => self.write(ctx, save, next),
             Err(error) => self.notices.error(error.message),
         }
+    }
+
+    /// Writes a scene file in a thread.
+    pub(super) fn write(&mut self, ctx: &Context, save: Save, next: Option<Next>) {
+        self.files.work(ctx, move || {
+            let result = save.write();
+            Done::Saved { save, result, next }
+        });
     }
 
     /// Asks for a file by the system's dialog.
@@ -287,7 +294,7 @@ impl App {
                     self.replace_document(document);
                     self.remember_file(&path);
                 }
-                Err(DocumentError { message, missing }) => {
+                Err(DocumentError { message, missing, changed_on_disk: _ }) => {
                     if self.shown.is_none() {
                         self.show_scene();
                     }
@@ -295,12 +302,16 @@ impl App {
                 }
             },
             Done::Saved { save, result: Ok(()), next } => {
-                self.notices.say(format!("saved {}", save.path.display()));
+                let lost = if save.comments_lost { "; its comments could not be kept" } else { "" };
+                self.notices.say(format!("saved {}{lost}", save.path.display()));
                 self.remember_file(&save.path.clone());
                 self.document.saved(save);
                 if let Some(next) = next {
                     self.go_on(ctx, next);
                 }
+            }
+            Done::Saved { save, result: Err(error), next } if error.changed_on_disk => {
+                self.files.modal = Some(Modal::Changed { save, message: error.message, next });
             }
             Done::Saved { result: Err(error), .. } => self.notices.error(error.message),
             Done::Kept(Ok(())) => {}

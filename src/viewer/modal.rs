@@ -7,6 +7,7 @@ use super::dialog::Purpose;
 use super::export::ExportChoice;
 use super::files::{For, Modal, Next};
 use super::path_field::Choice;
+use crate::document::Save;
 use crate::document::recovery::Found;
 
 /// What the person answered to unsaved work.
@@ -14,6 +15,13 @@ enum Unsaved {
     Save,
     Discard,
     Stay,
+}
+
+/// What the person answered to a file that another program changed.
+enum Overwrite {
+    Yes,
+    Elsewhere,
+    No,
 }
 
 impl App {
@@ -61,6 +69,7 @@ impl App {
                 });
                 stays.then_some(Modal::BadScene { path, message, missing })
             }
+            Modal::Changed { save, message, next } => self.changed_ui(ui, save, message, next),
             Modal::Recover(found) => self.recover_ui(ui, found),
         });
         // What an answer itself opened comes before the question that was just answered.
@@ -89,6 +98,40 @@ impl App {
             Some(Unsaved::Save) => self.save(ui.ctx(), Some(next)),
             Some(Unsaved::Discard) => self.go_on(ui.ctx(), next),
             Some(Unsaved::Stay) => {}
+        }
+        None
+    }
+
+    fn changed_ui(
+        &mut self,
+        ui: &mut Ui,
+        save: Save,
+        message: String,
+        next: Option<Next>,
+    ) -> Option<Modal> {
+        ui.heading("The file was changed by another program");
+        ui.label(&message);
+        let mut answer = None;
+        ui.horizontal(|ui| {
+            for (name, about, value) in [
+                ("Overwrite", "Replaces the file; the one before it becomes NAME~", Overwrite::Yes),
+                ("Save as…", "Asks for another file", Overwrite::Elsewhere),
+                ("Cancel", "Saves nothing", Overwrite::No),
+            ] {
+                if ui.button(name).on_hover_text(about).clicked() {
+                    answer = Some(value);
+                }
+            }
+        });
+        match answer {
+            None => return Some(Modal::Changed { save, message, next }),
+            Some(Overwrite::Yes) => {
+                let mut save = save;
+                save.overwrite = true;
+                self.write(ui.ctx(), save, next);
+            }
+            Some(Overwrite::Elsewhere) => self.ask_save(ui.ctx(), next),
+            Some(Overwrite::No) => {}
         }
         None
     }

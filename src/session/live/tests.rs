@@ -411,7 +411,8 @@ fn watched_costs_follow_the_scene_shown() {
     window.wait("costs", |w| w.live.costs().len() == 2);
     let expected = |scene: &Scene| {
         let session = fresh(scene);
-        let cost = |path: &String| Some((path.clone(), crate::session::cost::cost(&session, path)?));
+        let cost =
+            |path: &String| Some((path.clone(), crate::session::cost::cost(&session, path)?));
         paths.iter().filter_map(cost).collect::<BTreeMap<_, _>>()
     };
     assert_eq!(*window.live.costs(), expected(&scene));

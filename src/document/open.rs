@@ -1,0 +1,151 @@
+//! Opens scene files, also when their mesh files lie elsewhere.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use toml::de::DeTable;
+
+use super::history::History;
+use super::relocate::relative;
+use super::save::file_name;
+use super::{Base, Document, DocumentError};
+use crate::scene::read::{self, Meshes};
+use crate::scene::{Scene, Shape, mesh};
+
+impl Document {
+    /// A document without a file, from a template or the built-in scene.
+    pub fn untitled(name: &str, text: &str) -> Result<Document, DocumentError> {
+        let scene = read::text(text, Path::new(name)).map_err(DocumentError::new)?;
+        Ok(Document::of(name, text, scene))
+    }
+
+    /// A document without a file whose text reads as `scene`.
+    pub(super) fn of(name: &str, text: &str, scene: Scene) -> Document {
+        let base = Base { text: text.into(), scene: Arc::new(scene.clone()) };
+        Document {
+            name: name.to_owned(),
+            path: None,
+            saved: Arc::clone(&base.scene),
+            base,
+            disk: None,
+            history: History::new(scene),
+            is_rescued: false,
+            is_unsaved: false,
+        }
+    }
+
+    /// Opens a scene file.
+    pub fn open(path: &Path) -> Result<Document, DocumentError> {
+        Document::open_relocated(path, &[])
+    }
+
+    /// Opens a scene file with a mesh file replaced: the text, so edited, counts as unsaved.
+    pub fn open_with(path: &Path, missing: &str, found: &Path) -> Result<Document, DocumentError> {
+        Document::open_relocated(path, &[(missing.to_owned(), found.to_owned())])
+    }
+
+    /// [`Document::open_with`] for several mesh files. Others that are missing are also sought beside
+    /// those that were found.
+    pub fn open_relocated(
+        path: &Path,
+        found: &[(String, PathBuf)],
+    ) -> Result<Document, DocumentError> {
+        let path = &std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let bytes = std::fs::read(path).map_err(|error| {
+            let help = "check the name of the file and its permissions";
+            DocumentError::new(format!(
+                "{}: cannot be read: {error}\n  help: {help}",
+                path.display()
+            ))
+        })?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let text = String::from_utf8_lossy(&bytes);
+        let found = replacements(&text, folder, found);
+        let known = known(&found)?;
+        let scene = read::bytes(&bytes, path, known)
+            .map_err(|error| with_missing(error.to_string(), &text, folder, &found))?;
+        let edited = replaced(&scene, &found, folder);
+        let mut document = Document::of(&file_name(path), &text, scene);
+        document.path = Some(path.clone());
+        document.disk = Some(Arc::clone(&document.base.text));
+        document.history = History::new(edited);
+        document.refresh();
+        Ok(document)
+    }
+}
+
+/// Mesh files as the scene names them, and where they are instead.
+type Found = Vec<(String, PathBuf)>;
+
+/// Those that were given, and missing ones that lie beside them.
+pub(super) fn replacements(text: &str, folder: &Path, given: &[(String, PathBuf)]) -> Found {
+    let mut found = given.to_vec();
+    for file in mesh_files(text) {
+        if folder.join(&file).exists() || found.iter().any(|(known, _)| *known == file) {
+            continue;
+        }
+        let name = Path::new(&file).file_name().unwrap_or_default();
+        let beside = given.iter().map(|(_, place)| place.with_file_name(name));
+        if let Some(place) = beside.into_iter().find(|place| place.is_file()) {
+            found.push((file, place));
+        }
+    }
+    found
+}
+
+/// Reads the mesh files that were found.
+pub(super) fn known(found: &Found) -> Result<Meshes, DocumentError> {
+    let mut known = Meshes::new();
+    for (file, place) in found {
+        let mesh = mesh::read_obj(place).map_err(DocumentError::new)?;
+        known.insert(file.clone(), Arc::new(mesh));
+    }
+    Ok(known)
+}
+
+/// The scene with the mesh files named by where they were found.
+pub(super) fn replaced(scene: &Scene, found: &Found, folder: &Path) -> Scene {
+    let mut scene = scene.clone();
+    for solid in &mut scene.solids {
+        if let Shape::Mesh { file, .. } = &mut solid.shape
+            && let Some((_, place)) = found.iter().find(|(missing, _)| missing == file)
+            && let Some(name) = relative(place, folder)
+        {
+            *file = name;
+        }
+    }
+    scene
+}
+
+/// The error with the first mesh file that is not there, if that may be the cause.
+pub(super) fn with_missing(
+    mut message: String,
+    text: &str,
+    folder: &Path,
+    found: &Found,
+) -> DocumentError {
+    let is_missing =
+        |file: &String| !folder.join(file).exists() && found.iter().all(|(known, _)| known != file);
+    let missing = mesh_files(text).into_iter().find(is_missing);
+    if let Some(file) = &missing {
+        let place = folder.join(file);
+        message.push_str(&format!(
+            "\nthe mesh file {file} was sought at {}\n  help: put it there, or say where it is",
+            place.display()
+        ));
+    }
+    DocumentError { missing, ..DocumentError::new(message) }
+}
+
+/// The mesh files that a text names, whatever else is wrong with it.
+fn mesh_files(text: &str) -> Vec<String> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let (root, _) = DeTable::parse_recoverable(text);
+    let solids = root.get_ref().get("solids").and_then(|solids| solids.get_ref().as_table());
+    let file = |(_, solid): (_, &toml::Spanned<toml::de::DeValue<'_>>)| {
+        let mesh = solid.get_ref().as_table()?.get("mesh")?;
+        let file = mesh.get_ref().as_table()?.get("file")?;
+        file.get_ref().as_str().map(str::to_owned)
+    };
+    solids.into_iter().flat_map(DeTable::iter).filter_map(file).collect()
+}
