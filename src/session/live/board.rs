@@ -25,6 +25,9 @@ struct Face {
     /// Without its job, whose steps are read when they are asked for.
     status: Status,
     work: Option<Work>,
+    /// How many wishes were made, and up to which of them the status speaks.
+    wishes: u64,
+    heard: u64,
     events: Vec<Event>,
     costs: Arc<BTreeMap<String, Cost>>,
 }
@@ -93,9 +96,17 @@ impl Board {
         drop(old);
     }
 
-    pub(super) fn report(&self, status: Status, work: Option<Work>) {
+    /// Counts a wish: until the status speaks of it, nothing is in step.
+    pub(super) fn wish(&self) -> u64 {
         let mut face = self.face();
-        (face.status, face.work) = (status, work);
+        face.wishes += 1;
+        face.wishes
+    }
+
+    /// Takes a status that speaks of all wishes up to `heard`.
+    pub(super) fn report(&self, status: Status, work: Option<Work>, heard: u64) {
+        let mut face = self.face();
+        (face.status, face.work, face.heard) = (status, work, heard);
     }
 
     pub(super) fn tell(&self, event: Event) {
@@ -125,7 +136,8 @@ impl Board {
         let face = self.face();
         let job = face.work.as_ref();
         let job = job.map(|work| Job { what: work.what.clone(), steps: work.progress.steps() });
-        Status { job, ..face.status.clone() }
+        let in_step = face.status.in_step && face.heard == face.wishes;
+        Status { job, in_step, ..face.status.clone() }
     }
 
     pub(super) fn take_events(&self) -> Vec<Event> {

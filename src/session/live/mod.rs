@@ -141,7 +141,7 @@ impl Live {
 
     /// Makes `scene` the wanted one. A running trace goes on if the edit does not concern its rays.
     pub fn want(&self, scene: Arc<Scene>) {
-        self.order(Message::Want(scene));
+        self.order(Message::Want(scene, self.board.wish()));
     }
 
     /// The newest picture, if it is newer than the one taken before.

@@ -20,7 +20,8 @@ use crate::session::{Class, EditReport, Options, Session};
 
 /// What the shader is told, by the window and by the other threads.
 pub(super) enum Message {
-    Want(Arc<Scene>),
+    /// A scene, and how many wishes there were with it.
+    Want(Arc<Scene>, u64),
     Cancel(Target),
     Resume,
     Watch(Vec<String>),
@@ -133,6 +134,8 @@ pub(super) struct Shader {
     waiting: Vec<Export>,
     exports: VecDeque<Pending>,
     badges: Badges,
+    /// The number of the newest wish.
+    heard: u64,
     /// The progress last told.
     told: (u64, u64),
 }
@@ -164,6 +167,7 @@ impl Shader {
             waiting: Vec::new(),
             exports: VecDeque::new(),
             badges: Badges::default(),
+            heard: 0,
             told: (0, 0),
         }
     }
@@ -213,7 +217,10 @@ impl Shader {
 
     fn handle(&mut self, message: Message) {
         match message {
-            Message::Want(scene) => self.want(scene),
+            Message::Want(scene, number) => {
+                self.heard = self.heard.max(number);
+                self.want(scene);
+            }
             Message::Cancel(target) => self.cancel(target),
             Message::Resume => self.resume(),
             Message::Watch(paths) => self.badges.watch(paths),
@@ -517,7 +524,7 @@ impl Shader {
             let (what, progress) = (what.clone(), progress.clone());
             Some(Work { what, progress, target: Target::Export })
         };
-        self.board.report(status, trace.or_else(export));
+        self.board.report(status, trace.or_else(export), self.heard);
     }
 
     /// Wakes the window if a job has come further.
@@ -539,7 +546,7 @@ fn compiled(session: &Session) -> Compiled {
 /// The messages without wishes that newer ones follow.
 fn newest_wish(messages: impl Iterator<Item = Message>) -> Vec<Message> {
     let mut messages: Vec<Message> = messages.collect();
-    let is_wish = |message: &Message| matches!(message, Message::Want(_));
+    let is_wish = |message: &Message| matches!(message, Message::Want(..));
     let newest = messages.iter().rposition(is_wish);
     let mut at = 0;
     messages.retain(|message| {

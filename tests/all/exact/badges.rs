@@ -1,0 +1,187 @@
+//! The cost shown before an edit is the class of the edit, for every parameter of every scene.
+
+use rayforest::progress::Progress;
+use rayforest::scene::path::{self, Parameter, parameters};
+use rayforest::scene::range::Kind;
+use rayforest::scene::{Scene, check};
+use rayforest::session::cost::{Cost, cost};
+use rayforest::session::{Class, Options, Session};
+
+use super::{SHIPPED, open, set, shipped};
+
+/// The numbers of a TOML value.
+fn numbers(value: &str) -> Vec<f64> {
+    let inside = value.trim_matches(['[', ']']);
+    inside.split(',').map(|n| n.trim().parse().unwrap()).collect()
+}
+
+/// The scene with every channel of a parameter raised to at least `value`, or the number itself
+/// set, if it is one that counts or bounds.
+fn raised(scene: &Scene, parameter: &Parameter, value: f64) -> Scene {
+    let mut raised = scene.clone();
+    let text = match parameter.kind {
+        Kind::Coefficient => {
+            let channels = numbers(&parameter.value).into_iter().cycle().take(3);
+            format!("{:?}", channels.map(|c| c.max(value)).collect::<Vec<_>>())
+        }
+        Kind::Whole => format!("{}", value as u32),
+        _ => format!("{value:?}"),
+    };
+    set(&mut raised, &parameter.path, &text);
+    raised
+}
+
+/// Values on both sides of a limit: those that need no ray, and those that do.
+fn around(parameter: &Parameter, limit: f64, up: bool) -> (f64, f64) {
+    let single = limit as f32;
+    assert_eq!(f64::from(single), limit, "{}: a limit between two values", parameter.path);
+    let beyond = match (parameter.kind, up) {
+        (Kind::Whole, _) => limit + 1.0,
+        (_, true) => f64::from(single.next_up()),
+        (_, false) => f64::from(single.next_down()),
+    };
+    (limit, beyond)
+}
+
+/// Some other legal values of a parameter.
+fn others(scene: &Scene, parameter: &Parameter) -> Vec<Scene> {
+    let mut values: Vec<String> = ["0", "0.004", "0.37", "1", "2", "5", "10", "false", "true"]
+        .into_iter()
+        .chain(["[0.1, 0.2, 0.3]", "[0, 2, 0.5]", "[3, 5]", "[9, 31]", "1e6"])
+        .map(str::to_owned)
+        .collect();
+    values.extend(scene.materials.iter().take(2).map(|m| m.name.clone()));
+    let legal = values.into_iter().filter_map(|value| {
+        let mut other = scene.clone();
+        path::set(&mut other, &parameter.path, &value).ok()?;
+        (other != *scene && check::validate(&other).is_empty()).then_some(other)
+    });
+    legal.collect()
+}
+
+/// What a cost claims, held to the classes of edits; what is wrong with it.
+fn lie(session: &mut Session, parameter: &Parameter, cost: Cost) -> Option<String> {
+    let scene = session.scene().clone();
+    let range = parameter.range;
+    let mut class = |edited: &Scene| session.class_of(edited);
+    let mut claim = |edited: &Scene, holds: &dyn Fn(Class) -> bool| {
+        let class = class(edited);
+        let path = &parameter.path;
+        (!holds(class)).then(|| format!("{path} is {cost:?}, but an edit is {class}"))
+    };
+    let instant = |class: Class| class <= Class::Reshade;
+    let traced = |class: Class| class == Class::Retrace;
+    match cost {
+        Cost::InstantUpTo(limit) | Cost::InstantDownTo(limit) => {
+            let up = matches!(cost, Cost::InstantUpTo(_));
+            let (within, beyond) = around(parameter, limit, up);
+            let half = if up { within / 2.0 } else { within.midpoint(1.0) };
+            claim(&raised(&scene, parameter, within), &instant)
+                .or_else(|| claim(&raised(&scene, parameter, beyond), &traced))
+                .or_else(|| claim(&raised(&scene, parameter, half), &instant))
+        }
+        Cost::Instant => {
+            let ends = range.filter(|_| parameter.kind != Kind::Whole);
+            let ends = ends.map_or(vec![], |r| vec![r.low, r.high]);
+            let ends = ends.into_iter().map(|end| raised(&scene, parameter, end));
+            let values: Vec<Scene> = ends.chain(others(&scene, parameter)).collect();
+            values.iter().find_map(|edited| claim(edited, &instant))
+        }
+        Cost::Refold => {
+            others(&scene, parameter).iter().find_map(|e| claim(e, &|c| c == Class::Refold))
+        }
+        Cost::TraceAll => others(&scene, parameter).iter().find_map(|e| claim(e, &traced)),
+    }
+}
+
+/// Holds the costs of all parameters; how many of each kind there are.
+fn hold(session: &mut Session, what: &str) -> [usize; 5] {
+    let mut kinds = [0; 5];
+    for parameter in parameters(&session.scene().clone()) {
+        let path = &parameter.path;
+        let cost = cost(session, path).unwrap_or_else(|| panic!("{what}: {path} has no cost"));
+        if let Some(lie) = lie(session, &parameter, cost) {
+            panic!("{what}: {lie}");
+        }
+        kinds[match cost {
+            Cost::Instant => 0,
+            Cost::InstantUpTo(_) => 1,
+            Cost::InstantDownTo(_) => 2,
+            Cost::Refold => 3,
+            Cost::TraceAll => 4,
+        }] += 1;
+    }
+    kinds
+}
+
+#[test]
+fn every_badge_of_every_scene_is_the_class_of_the_edit() {
+    let mut all = [0; 5];
+    for name in SHIPPED {
+        let mut session = open(&shipped(name, [48, 32], 2), 2);
+        for (sum, kind) in all.iter_mut().zip(hold(&mut session, name)) {
+            *sum += kind;
+        }
+    }
+    assert!(all.iter().all(|&kind| kind >= 3), "kinds of costs met: {all:?}");
+}
+
+#[test]
+fn badges_hold_after_edits_too() {
+    let mut session = open(&shipped("glass", [48, 32], 2), 2);
+    for (path, value) in [
+        ("materials.ruby.reflect", "[0.3, 0, 0.1]"),
+        ("materials.amber.transmit", "0"),
+        ("trace.cutoff", "0.02"),
+        ("trace.depth", "3"),
+    ] {
+        let mut edited = session.scene().clone();
+        set(&mut edited, path, value);
+        session.edit(edited, &Progress::default()).unwrap();
+        hold(&mut session, path);
+    }
+}
+
+#[test]
+fn highlights_that_were_released_are_traced() {
+    let scene = shipped("whitted", [96, 64], 16);
+    let matrix = open(&scene, 1).transport().bytes() as u64;
+    let budget = Options { threads: 1, memory: matrix + matrix / 10 };
+    let mut session = Session::open(scene, budget, &Progress::default()).unwrap();
+    assert_eq!(cost(&session, "materials.tiles.shininess"), Some(Cost::TraceAll));
+    hold(&mut session, "released");
+}
+
+#[test]
+fn what_is_no_parameter_has_no_cost() {
+    let session = open(&shipped("mesh", [16, 9], 1), 1);
+    assert_eq!(cost(&session, "materials.slate.shine"), None);
+    assert_eq!(cost(&session, "materials"), None);
+}
+
+#[test]
+fn a_cost_that_lies_is_caught() {
+    let mut session = open(&shipped("whitted", [48, 32], 2), 2);
+    let all = parameters(session.scene());
+    let mut lies = |path: &str, claimed: Cost| {
+        let parameter = all.iter().find(|p| p.path == path).unwrap();
+        assert_ne!(cost(&session, path), Some(claimed), "{path}: a lie is wanted");
+        assert!(lie(&mut session, parameter, claimed).is_some(), "{path}: {claimed:?} passed");
+    };
+    lies("materials.glass.diffuse", Cost::InstantUpTo(0.5));
+    lies("materials.glass.diffuse", Cost::TraceAll);
+    lies("materials.glass.shininess", Cost::Instant);
+    lies("materials.tiles.reflect", Cost::Instant);
+    lies("camera.eye", Cost::Instant);
+    lies("camera.eye", Cost::Refold);
+    lies("trace.cutoff", Cost::InstantDownTo(0.5));
+    lies("trace.depth", Cost::InstantUpTo(64.0 - 1.0));
+    let Some(Cost::InstantUpTo(limit)) = cost(&session, "materials.tiles.reflect") else {
+        panic!("tiles may become a mirror");
+    };
+    for wrong in [(limit as f32).next_up(), (limit as f32).next_down()] {
+        let parameter = all.iter().find(|p| p.path == "materials.tiles.reflect").unwrap();
+        let claimed = Cost::InstantUpTo(f64::from(wrong));
+        assert!(lie(&mut session, parameter, claimed).is_some(), "{claimed:?} passed");
+    }
+}
