@@ -19,8 +19,10 @@ use crate::session::cost::Cost;
 const NAME: f32 = 98.0;
 /// Width of a number field.
 const FIELD: f32 = 58.0;
+/// Width of the button that unfolds channels; kept free beside other sliders, so that all align.
+const TOGGLE: f32 = 30.0;
 /// Width of the badge.
-const BADGE: f32 = 104.0;
+const BADGE: f32 = 108.0;
 
 /// What a row shows besides its value.
 pub(super) struct Row<'a> {
@@ -143,7 +145,7 @@ fn number_ui(ui: &mut Ui, row: &Row<'_>, name: &str, x: &mut f64, range: Range) 
 
 fn slider_ui(ui: &mut Ui, row: &Row<'_>, name: &str, x: &mut f64, range: Range) -> bool {
     let hints::Scale { span, logarithmic } = hints::scale(row.key, range, *x);
-    let space = ui.available_width() - FIELD - ui.spacing().item_spacing.x;
+    let space = ui.available_width() - FIELD - TOGGLE - 2.0 * ui.spacing().item_spacing.x;
     ui.spacing_mut().slider_width = space.max(40.0);
     let (low, high) = (*span.start(), *span.end());
     let slider = Slider::new(x, span).show_value(false).clamping(SliderClamping::Never);
@@ -239,14 +241,10 @@ fn coefficient_ui(ui: &mut Ui, row: &Row<'_>, color: &mut Rgb, range: Range) -> 
     let id = channels_id(ui, row);
     let mut open = ui.data(|data| data.get_temp::<bool>(id)).unwrap_or(false);
     let mut wide = f64::from(r);
-    let button = ui.spacing().interact_size.y;
-    let changed = ui
-        .allocate_ui(vec2(ui.available_width() - button - 4.0, button), |ui| {
-            number_ui(ui, row, row.key, &mut wide, range)
-        })
-        .inner;
+    let changed = number_ui(ui, row, row.key, &mut wide, range);
     let toggle = Button::selectable(open, RichText::new("rgb").small()).small();
-    let toggle = ui.add(toggle).accessible_name(format!("channels of {}", row.key));
+    let toggle = ui.add_sized(vec2(TOGGLE, ui.spacing().interact_size.y), toggle);
+    let toggle = toggle.accessible_name(format!("channels of {}", row.key));
     if toggle.on_hover_text("One slider for each of red, green and blue").clicked() {
         open = !open;
         ui.data_mut(|data| data.insert_temp(id, open));

@@ -100,12 +100,12 @@ mod tests {
         let mut scene = Scene::default();
         for (i, key) in PLACES.iter().enumerate() {
             let name = format!("l{i}");
-            scene.lights.push(Light { place: LightPlace::named(key), ..Light::new(&name) });
+            scene.lights.push(Light { place: LightPlace::named(key), ..Light::new(name) });
         }
         scene.materials.push(Material::new("plain"));
         scene.materials.push(Material { paint: Paint::named("texture"), ..Material::new("tex") });
         for key in SHAPES {
-            scene.solids.push(Solid::new(key, Shape::named(key), 0));
+            scene.solids.push(Solid::new(*key, Shape::named(key), 0));
         }
         for lens in LENSES {
             scene.camera.lens = Lens::named(lens);
