@@ -64,6 +64,8 @@ impl PathField {
             return;
         }
         self.folder = Some(folder.to_owned());
+        // Names of one folder are not offered in another.
+        self.entries.clear();
         let (send, receive) = channel();
         let (folder, ctx) = (folder.to_owned(), ctx.clone());
         let (_, endings) = self.question.purpose.filter();

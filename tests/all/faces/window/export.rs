@@ -81,7 +81,8 @@ fn a_file_that_cannot_be_written_is_told() {
     let (mut window, _) = edited("no/such/folder/out.png");
     window.key(Modifiers::COMMAND, Key::E);
     window.click("Choose file…");
-    window.until_text("no/such/folder/out.png");
+    window.until_button("Close");
+    assert!(window.shows("no/such/folder/out.png"));
     assert!(!window.shows("wrote "));
     window.click("Close");
     assert!(!window.shows("no/such/folder/out.png"));

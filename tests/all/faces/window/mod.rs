@@ -127,8 +127,32 @@ impl Window {
 
     /// Presses the one button of this name; a shortcut may stand behind the name.
     fn click(&mut self, name: &str) {
-        let at = self.button(name).unwrap_or_else(|| panic!("no button `{name}`"));
+        let at = self.settled(name);
         self.click_at(at, Modifiers::NONE);
+    }
+
+    /// Where a button is, once it no longer moves: a question finds its place in some turns.
+    fn settled(&mut self, name: &str) -> Pos2 {
+        let mut places = Vec::new();
+        for _ in 0..100 {
+            places.push(self.button(name).unwrap_or_else(|| panic!("no button `{name}`")));
+            if places.iter().rev().take_while(|at| *at == &places[places.len() - 1]).count() == 3 {
+                break;
+            }
+            self.harness.step();
+        }
+        places[places.len() - 1]
+    }
+
+    /// Turns until there is a button of this name, and nothing around it moves any more.
+    fn until_button(&mut self, name: &str) {
+        let start = Instant::now();
+        while self.button(name).is_none() {
+            assert!(start.elapsed() < PATIENCE, "no button `{name}` in {:#?}", self.texts());
+            self.harness.step();
+            std::thread::sleep(Duration::from_millis(3));
+        }
+        self.harness.run_steps(3);
     }
 
     /// Where the one button, or line of a list, of this name is.

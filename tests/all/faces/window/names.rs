@@ -194,8 +194,7 @@ fn every_button_of_the_questions_has_a_name_and_a_tooltip() {
     window.walk(&before, 8);
     window.click("Choose file…");
     window.until_text("The system offers no file dialog here");
-    window.until_text("config/");
-    window.harness.run_steps(3);
+    window.until_button("config/");
     window.walk(&before, 4);
     window.click("Cancel");
 
