@@ -11,6 +11,8 @@ pub mod settings;
 mod splice;
 mod step;
 #[cfg(test)]
+mod tests;
+#[cfg(test)]
 mod tests_patch;
 
 use std::fmt;
@@ -76,8 +78,7 @@ impl fmt::Display for DocumentError {
 impl std::error::Error for DocumentError {}
 
 /// The scene that is always there: name and text.
-pub const BUILT_IN: (&str, &str) =
-    ("Whitted's spheres", include_str!("../../scenes/whitted.toml"));
+pub const BUILT_IN: (&str, &str) = ("Whitted's spheres", include_str!("../../scenes/whitted.toml"));
 
 /// Scenes to begin with: name and text.
 pub const TEMPLATES: &[(&str, &str)] = &[

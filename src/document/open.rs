@@ -53,7 +53,10 @@ impl Document {
         let path = &std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         let bytes = std::fs::read(path).map_err(|error| {
             let help = "check the name of the file and its permissions";
-            DocumentError::new(format!("{}: cannot be read: {error}\n  help: {help}", path.display()))
+            DocumentError::new(format!(
+                "{}: cannot be read: {error}\n  help: {help}",
+                path.display()
+            ))
         })?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let text = String::from_utf8_lossy(&bytes);
@@ -121,9 +124,8 @@ pub(super) fn with_missing(
     folder: &Path,
     found: &Found,
 ) -> DocumentError {
-    let is_missing = |file: &String| {
-        !folder.join(file).exists() && found.iter().all(|(known, _)| known != file)
-    };
+    let is_missing =
+        |file: &String| !folder.join(file).exists() && found.iter().all(|(known, _)| known != file);
     let missing = mesh_files(text).into_iter().find(is_missing);
     if let Some(file) = &missing {
         let place = folder.join(file);

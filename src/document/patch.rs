@@ -4,12 +4,12 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use super::splice::Splice;
+use crate::scene::Scene;
 use crate::scene::fields::{LISTS, Need};
 use crate::scene::read::{meshes, text_with};
 use crate::scene::toml_text::bare_or_quoted;
 use crate::scene::value::Names;
 use crate::scene::write::{self, Content, Defaults, Node, tree};
-use crate::scene::Scene;
 
 /// A scene's text.
 #[derive(Clone, Debug, PartialEq)]
@@ -239,8 +239,10 @@ impl Patch {
     /// Inserts a value or a table of another kind, and removes the one in its place.
     fn variant(&mut self, place: &Place, node: &Node, rival: Option<&Node>) -> Option<()> {
         let table: Vec<&str> = place.path.iter().map(String::as_str).collect();
-        let is_asked_for = self.defaults.asks_for(&table, node);
         let rival = rival.map(|rival| place.of(&rival.key));
+        // in the place of what was spelled out, a default is spelled out too: it may be all there is
+        let is_spelled = rival.as_ref().is_some_and(|rival| self.splice.spells(rival));
+        let is_asked_for = is_spelled || self.defaults.asks_for(&table, node);
         if let Some(rival) = &rival
             && is_asked_for
             && self.splice.replace(rival, &node.key, &node.inline())?
@@ -261,8 +263,7 @@ impl Patch {
             return self.splice.insert_pair(path, (&node.key, &node.inline()), &before, after);
         }
         let header: Vec<String> = path.iter().map(|key| bare_or_quoted(key)).collect();
-        let block =
-            format!("\n[{}]\n{} = {}\n", header.join("."), node.key, node.inline());
+        let block = format!("\n[{}]\n{} = {}\n", header.join("."), node.key, node.inline());
         let (groups, lists) = (["camera", "picture", "trace", "background"], LISTS);
         let alone = |key: &&str| vec![(*key).to_owned()];
         match path.len() {

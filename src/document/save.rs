@@ -59,8 +59,9 @@ impl Save {
             return Err(failed(&format!("cannot write {shown}: the file is read-only")));
         }
         let backup = backup(&target);
-        durably(&backup, Some(permissions.clone()), &earlier)
-            .map_err(|error| failed(&format!("{shown} is not saved, for its backup failed: {error}")))?;
+        durably(&backup, Some(permissions.clone()), &earlier).map_err(|error| {
+            failed(&format!("{shown} is not saved, for its backup failed: {error}"))
+        })?;
         durably(&target, Some(permissions), self.text.as_bytes())
             .map_err(|error| failed(&error.to_string()))
     }

@@ -146,7 +146,9 @@ mod tests {
     fn what_cannot_be_read_is_set_aside_and_said() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("settings.toml");
-        for (number, text) in ["zoom_percent = \"big\"", "theme = ", "theme = \"pink\""].iter().enumerate() {
+        for (number, text) in
+            ["zoom_percent = \"big\"", "theme = ", "theme = \"pink\""].iter().enumerate()
+        {
             std::fs::write(&file, text).unwrap();
             let (settings, wrong) = Settings::read(&file);
             assert_eq!(settings, Settings::default());

@@ -240,8 +240,7 @@ impl Splice {
     fn without_pair(&self, pair: &Pair) -> Vec<Edit> {
         let Home::Inline(_) = pair.home else { return vec![(self.lines(pair), String::new())] };
         let inside = |other: &&Pair| other.home == pair.home;
-        let entries: Vec<Span> =
-            self.outline.pairs.iter().filter(inside).map(Pair::span).collect();
+        let entries: Vec<Span> = self.outline.pairs.iter().filter(inside).map(Pair::span).collect();
         let index = entries.iter().position(|span| *span == pair.span());
         self.without(&entries, index.expect("a pair is among the pairs of its table"))
     }
@@ -255,8 +254,7 @@ impl Splice {
             return Some(false);
         }
         let last = pair.keys.last().expect("a pair has a key").clone();
-        let edits =
-            vec![(last, bare_or_quoted(key)), (pair.value.span.clone(), value.to_owned())];
+        let edits = vec![(last, bare_or_quoted(key)), (pair.value.span.clone(), value.to_owned())];
         self.edit(edits).map(|()| true)
     }
 
@@ -274,6 +272,11 @@ impl Splice {
     /// Whether the value or table `path` is spelled, at least in part, by pairs that name it.
     pub(super) fn is_pairs(&self, path: &[String]) -> bool {
         self.outline.pairs_of(path).next().is_some()
+    }
+
+    /// Whether the text says anything of the value or table `path`.
+    pub(super) fn spells(&self, path: &[String]) -> bool {
+        self.is_pairs(path) || self.outline.headers_of(path).next().is_some()
     }
 
     /// Inserts `key = value` into a table that [takes pairs](Splice::takes_pairs): after the nearest
@@ -361,7 +364,8 @@ impl Splice {
             (at..at, self.closed(at) + &block)
         } else if let Some(index) = after.iter().find_map(first) {
             let at = self.block(index).start;
-            let block = block.strip_prefix(newline).unwrap_or(&block);
+            let is_apart = at == 0 || self.is_blank(self.line_start(at - 1)..at);
+            let block = block.strip_prefix(newline).filter(|_| is_apart).unwrap_or(&block);
             (at..at, format!("{block}{newline}"))
         } else {
             let at = self.text.len();
@@ -392,7 +396,10 @@ impl Splice {
         let edits = slots.iter().zip(&places).map(|(slot, place)| {
             let (old, mut new) = (text(slot), text(place));
             // the last line of the text may lack its end
-            if old.ends_with('\n') && !new.ends_with('\n') && places.iter().all(|p| self.is_lines(p)) {
+            if old.ends_with('\n')
+                && !new.ends_with('\n')
+                && places.iter().all(|p| self.is_lines(p))
+            {
                 new.push_str(self.newline);
             }
             (slot.clone(), new)

@@ -229,29 +229,37 @@ fn hex(channels: &[f64]) -> Option<String> {
     inside.then(|| format!("#{:02x}{:02x}{:02x}", bytes[0], bytes[1], bytes[2]))
 }
 
+/// Enough to tell any two numbers apart.
+const MOST_DIGITS: usize = 17;
+
 /// As few digits as tell the two apart and are within a half per cent of the larger number.
 fn short(old: &[f64], new: &[f64]) -> (String, String) {
     let all = || old.iter().chain(new);
     let largest = all().fold(0.0f64, |largest, x| largest.max(x.abs()));
     let is_plain = largest == 0.0 || (1e-3..1e7).contains(&largest);
-    for digits in 0..17 {
+    let mut digits = 0;
+    loop {
         let one = |x: &f64| match is_plain {
             // whole numbers need no zeros
             true if x.fract() == 0.0 => format!("{x:.0}"),
             true => format!("{x:.digits$}"),
             false => format!("{x:.digits$e}"),
         };
-        let exact = |x: &f64| {
-            one(x).parse::<f64>().is_ok_and(|shown| (shown - x).abs() <= 0.005 * largest)
-        };
+        let exact =
+            |x: &f64| one(x).parse::<f64>().is_ok_and(|shown| (shown - x).abs() <= 0.005 * largest);
+        let each = |numbers: &[f64]| numbers.iter().map(one).collect::<Vec<_>>();
         let list = |numbers: &[f64]| match numbers {
             [number] => one(number),
-            numbers => format!("[{}]", numbers.iter().map(one).collect::<Vec<_>>().join(", ")),
+            numbers => format!("[{}]", each(numbers).join(", ")),
         };
-        let (shown_old, shown_new) = (list(old), list(new));
-        if digits == 16 || (all().all(exact) && shown_old != shown_new) {
-            return (shown_old, shown_new);
+        let is_told_apart = match (old.len(), new.len()) {
+            (1, 3) => each(new).iter().any(|shown| *shown != one(&old[0])),
+            (3, 1) => each(old).iter().any(|shown| *shown != one(&new[0])),
+            _ => each(old) != each(new),
+        };
+        if digits == MOST_DIGITS || (all().all(exact) && is_told_apart) {
+            return (list(old), list(new));
         }
+        digits += 1;
     }
-    (String::new(), String::new())
 }
