@@ -281,7 +281,9 @@ impl Patch {
         let Place { path, before, after } = place;
         let mut after = after.clone();
         after.extend(keys(present));
-        let neighbour = before.last().or(after.first()).map(|key| place.of(key));
+        let spelled = |key: &&String| self.splice.spells(&place.of(key));
+        let neighbour = before.last().or_else(|| after.iter().find(spelled));
+        let neighbour = neighbour.map(|key| place.of(key));
         let is_pair = match &neighbour {
             Some(neighbour) => self.splice.is_pairs(neighbour),
             None => self.splice.takes_pairs(path) && !self.splice.has_header(path),

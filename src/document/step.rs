@@ -245,18 +245,17 @@ fn short(old: &[f64], new: &[f64]) -> (String, String) {
             true => format!("{x:.digits$}"),
             false => format!("{x:.digits$e}"),
         };
-        let exact =
-            |x: &f64| one(x).parse::<f64>().is_ok_and(|shown| (shown - x).abs() <= 0.005 * largest);
+        // as numbers: 1.00 is not told apart from 1
+        let rounded = |x: &f64| one(x).parse::<f64>().unwrap_or(*x);
+        let exact = |x: &f64| (rounded(x) - x).abs() <= 0.005 * largest;
         let each = |numbers: &[f64]| numbers.iter().map(one).collect::<Vec<_>>();
         let list = |numbers: &[f64]| match numbers {
             [number] => one(number),
             numbers => format!("[{}]", each(numbers).join(", ")),
         };
-        let is_told_apart = match (old.len(), new.len()) {
-            (1, 3) => each(new).iter().any(|shown| *shown != one(&old[0])),
-            (3, 1) => each(old).iter().any(|shown| *shown != one(&new[0])),
-            _ => each(old) != each(new),
-        };
+        let count = old.len().max(new.len());
+        let mut pairs = old.iter().cycle().zip(new.iter().cycle()).take(count);
+        let is_told_apart = pairs.any(|(old, new)| rounded(old) != rounded(new));
         if digits == MOST_DIGITS || (all().all(exact) && is_told_apart) {
             return (list(old), list(new));
         }
