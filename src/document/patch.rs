@@ -272,7 +272,7 @@ impl Patch {
                 let after: Vec<Vec<String>> = lists.iter().map(alone).collect();
                 self.splice.insert_block(&block, &before, &after)
             }
-            _ => self.splice.insert_block(&block, &[], &[path.clone()]),
+            _ => self.splice.insert_block(&block, &[], std::slice::from_ref(path)),
         }
     }
 
