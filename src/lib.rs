@@ -72,5 +72,6 @@ pub mod session;
 pub mod document;
 // faces
 pub mod bench;
-pub mod cli;
 pub mod viewer;
+// the command line opens the window
+pub mod cli;
