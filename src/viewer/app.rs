@@ -149,9 +149,13 @@ impl App {
         if self.files.is_modal() {
             return Vec::new();
         }
-        let typing = ctx.egui_wants_keyboard_input();
+        let focused = ctx.egui_wants_keyboard_input();
         let plain = |c: &Command| c.shortcut().is_some_and(|s| s.modifiers.is_none());
-        let usable = Command::WITH_SHORTCUTS.into_iter().filter(|c| !(typing && plain(c)));
+        // A text field has an undo of its own.
+        let typing = ctx.text_edit_focused();
+        let own = |c: &Command| typing && matches!(c, Command::Undo | Command::Redo);
+        let taken = |c: &Command| (focused && plain(c)) || own(c);
+        let usable = Command::WITH_SHORTCUTS.into_iter().filter(|c| !taken(c));
         usable
             .filter(|command| {
                 let shortcut = command.shortcut();
