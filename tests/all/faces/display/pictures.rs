@@ -1,0 +1,1 @@
+//! Pictures of the window for the eye, in sizes, zooms and themes.
