@@ -306,6 +306,8 @@ impl App {
                 self.notices.say(format!("saved {}{lost}", save.path.display()));
                 self.remember_file(&save.path.clone());
                 self.document.saved(save);
+                // Another folder may have changed the paths of meshes, and nothing is unsaved now.
+                self.show_scene();
                 if let Some(next) = next {
                     self.go_on(ctx, next);
                 }

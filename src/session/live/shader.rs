@@ -365,7 +365,9 @@ impl Shader {
             }
             _ => {}
         }
-        self.settle(Instant::now());
+        if !self.in_step() {
+            self.settle(Instant::now());
+        }
     }
 
     /// Shows a whole picture, with the newest edits.
