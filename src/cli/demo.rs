@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::render::edit_line;
 use super::watch::watched;
-use super::{Failure, print, read_scene, say};
+use super::{Failure, print, read_scene};
 use crate::document::BUILT_IN;
 use crate::film::write::{Format, check_writable, picture};
 use crate::scene::path::set;
@@ -47,7 +47,7 @@ fn save(session: &Session, file: PathBuf) -> Result<(), Failure> {
     let text = write::text(scene);
     let exposure = scene.picture.exposure;
     picture(&file, Format::Png8, &session.film(), exposure, &text).map_err(Failure::job)?;
-    say(&format!("wrote {}", file.display()));
+    print(&format!("wrote {}", file.display()));
     Ok(())
 }
 
