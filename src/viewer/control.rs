@@ -341,8 +341,8 @@ fn material_ui(ui: &mut Ui, row: &Row<'_>, index: &mut usize) -> bool {
 fn points_ui(ui: &mut Ui, row: &Row<'_>, points: &mut [DVec3], outcome: &mut RowOutcome) {
     let title = format!("{} ({})", row.key, points.len());
     let header = CollapsingHeader::new(title).id_salt(row.path);
-    badge_ui(ui, row.key, row.cost, BADGE);
     let header = header.show(ui, |ui| {
+        badge_ui(ui, row.key, row.cost, BADGE);
         for (i, point) in points.iter_mut().enumerate() {
             ui.horizontal(|ui| {
                 let name = format!("{} {i}", row.key);

@@ -110,6 +110,13 @@ impl Files {
         self.found = found;
     }
 
+    /// Asks a question. Found work that is being offered waits until it is answered.
+    fn show(&mut self, modal: Modal) {
+        if let Some(Modal::Recover(found)) = self.modal.replace(modal) {
+            self.found = found;
+        }
+    }
+
     /// Takes the question that waits.
     pub(super) fn take_modal(&mut self) -> Option<Modal> {
         self.modal.take().or_else(|| {
@@ -168,7 +175,7 @@ impl App {
             Command::SaveAs => self.ask_save(ctx, None),
             Command::Export => {
                 let form = ExportForm::new(self.document.scene().picture.size);
-                self.files.modal = Some(Modal::Export(form));
+                self.files.show(Modal::Export(form));
             }
             _ => {}
         }
@@ -178,7 +185,7 @@ impl App {
     fn after_unsaved(&mut self, ctx: &Context, next: Next) {
         self.document.end_gesture();
         if self.document.is_unsaved() {
-            self.files.modal = Some(Modal::Unsaved(next));
+            self.files.show(Modal::Unsaved(next));
         } else {
             self.go_on(ctx, next);
         }
@@ -286,7 +293,7 @@ impl App {
         let close = ctx.input(|i| i.viewport().close_requested());
         if close && !self.files.leaving && self.document.is_unsaved() {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
-            self.files.modal = Some(Modal::Unsaved(Next::Quit));
+            self.files.show(Modal::Unsaved(Next::Quit));
         }
     }
 
@@ -301,7 +308,7 @@ impl App {
             Answer::File(file) => self.chosen(ctx, file, what),
             Answer::Cancelled => {}
             Answer::NoService => {
-                self.files.modal = Some(Modal::Path(PathField::new(question, ctx), what));
+                self.files.show(Modal::Path(PathField::new(question, ctx), what));
             }
         }
     }
@@ -317,7 +324,7 @@ impl App {
                     if self.shown.is_none() {
                         self.show_scene();
                     }
-                    self.files.modal = Some(Modal::BadScene { path, message, missing });
+                    self.files.show(Modal::BadScene { path, message, missing });
                 }
             },
             Done::Saved { save, result: Ok(()), next } => {
@@ -333,7 +340,7 @@ impl App {
                 }
             }
             Done::Saved { save, result: Err(error), next } if error.changed_on_disk => {
-                self.files.modal = Some(Modal::Changed { save, message: error.message, next });
+                self.files.show(Modal::Changed { save, message: error.message, next });
             }
             Done::Saved { result: Err(error), .. } => self.notices.error(error.message),
             Done::Kept(Ok(())) => self.files.discard_recovered(),

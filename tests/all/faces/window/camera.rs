@@ -27,7 +27,7 @@ impl Window {
             if seen.last() != Some(&stage) {
                 seen.push(stage);
             }
-            if self.app().live().status().in_step {
+            if stage == Stage::Whole && self.app().live().status().in_step {
                 return seen;
             }
             assert!(start.elapsed() < PATIENCE, "{seen:?}");

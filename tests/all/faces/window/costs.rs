@@ -136,6 +136,9 @@ fn every_control_says_before_it_is_touched_what_an_edit_costs() {
     let (mut faults, mut kinds) = (Vec::new(), std::collections::BTreeSet::new());
     for (name, prefix) in lines {
         window.click(&name);
+        if name == "pane" {
+            window.click("points (3)");
+        }
         let mut paths = shown_for(&scene, &prefix);
         assert!(!paths.is_empty(), "{prefix}");
         for (key, text) in window.badges(paths.len()) {

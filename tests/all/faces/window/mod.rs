@@ -15,6 +15,7 @@ mod recovery;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use eframe::egui::accessibility::is_input;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Vec2, vec2};
 use egui_kittest::Harness;
@@ -133,12 +134,12 @@ impl Window {
     /// Where the one button, or line of a list, of this name is.
     fn button(&self, name: &str) -> Option<Pos2> {
         let long = format!("{name} ");
-        let roles = [Role::Button, Role::ComboBox, Role::Link, Role::RadioButton, Role::CheckBox];
+        let typed = [Role::Slider, Role::SpinButton, Role::TextInput];
         let named = |node: &egui_kittest::Node<'_>, whole: bool| {
             let node = node.accesskit_node();
             let label = node.label().unwrap_or_default();
             let same = if whole { label == name } else { label.starts_with(&long) };
-            roles.contains(&node.role()) && !node.is_hidden() && same
+            is_input(node.role()) && !typed.contains(&node.role()) && !node.is_hidden() && same
         };
         let all = |whole| self.harness.root().children_recursive().filter(move |n| named(n, whole));
         let found: Vec<_> = all(true).collect();
