@@ -210,10 +210,19 @@ impl Desk {
         self.server.move_to(at);
     }
 
-    fn click(&self, at: Pos2) {
-        self.point(at);
-        self.server.xdotool(&["mousedown", "1"]);
-        self.server.xdotool(&["mouseup", "1"]);
+    /// Does something with the pointer, and waits until the screen answers around a point: what
+    /// comes faster than the window draws may be taken for one event.
+    fn watched(&mut self, at: Pos2, what: &str, act: impl Fn(&Desk)) {
+        let around = Rect::from_center_size(at, [24.0, 24.0].into());
+        let before = self.server.shot();
+        act(self);
+        self.until_changed(&before, around, what);
+    }
+
+    fn click(&mut self, at: Pos2) {
+        self.watched(at, "it lights up", |desk| desk.point(at));
+        self.watched(at, "it is held", |desk| desk.server.xdotool(&["mousedown", "1"]));
+        self.watched(at, "it is let go", |desk| desk.server.xdotool(&["mouseup", "1"]));
     }
 
     /// Presses keys, such as `ctrl+s`.
@@ -221,19 +230,12 @@ impl Desk {
         self.server.xdotool(&["key", keys]);
     }
 
-    /// Drags a handle with the pointer; each step waits until the screen shows the one before.
+    /// Drags a handle with the pointer.
     fn drag(&mut self, from: Pos2, to: Pos2) {
-        let handle = Rect::from_center_size(from, [24.0, 24.0].into());
-        let before = self.server.shot();
-        self.point(from);
-        self.until_changed(&before, handle, "the handle lights up");
-        let lit = self.server.shot();
-        self.server.xdotool(&["mousedown", "1"]);
-        self.until_changed(&lit, handle, "the handle is held");
-        let held = self.server.shot();
-        self.point(to);
-        self.until_changed(&held, handle, "the handle moves away");
-        self.server.xdotool(&["mouseup", "1"]);
+        self.watched(from, "the handle lights up", |desk| desk.point(from));
+        self.watched(from, "it is held", |desk| desk.server.xdotool(&["mousedown", "1"]));
+        self.watched(to, "it moves", |desk| desk.point(to));
+        self.watched(to, "it is let go", |desk| desk.server.xdotool(&["mouseup", "1"]));
         self.point(REST);
     }
 
