@@ -28,7 +28,7 @@ pub(super) fn drag_diffuse(desk: &mut Desk, twin: &mut Twin) -> (Shot, Shot, Vec
     }
     desk.until_like(twin, "the material is shown");
     let before = desk.server.shot();
-    let mut places = vec![twin.rect(Role::Image, "picture"), status_line(&before)];
+    let mut places = vec![twin.rect(Role::Image, "picture"), status_line()];
     places.extend([twin.place("Undo"), twin.place("scene.toml")]);
     let (row, from, to) = slider(twin, "diffuse");
     places.push(row);
@@ -63,20 +63,9 @@ fn a_dragged_slider_changes_the_picture_its_row_the_status_and_the_marks_alone()
     });
 }
 
-/// Shows one pixel of the picture on one of the screen, on the desk and on its twin.
-pub(super) fn show_one_to_one(desk: &mut Desk, twin: &mut Twin) {
-    let button = twin.place("1:1").center();
-    twin.click(button);
-    twin.hover(REST);
-    desk.click(button);
-    desk.point(REST);
-    desk.until_like(twin, "the picture has its own size");
-}
-
 #[test]
 fn at_one_to_one_the_screen_shows_the_bytes_of_the_picture() {
-    let (mut desk, mut twin) = Desk::with_scene();
-    show_one_to_one(&mut desk, &mut twin);
+    let (desk, twin) = Desk::with_scene();
     let shot = desk.server.shot();
     let view = twin.rect(Role::Image, "picture");
     let bytes = super::rendered(desk.folder.path(), "scene.toml");

@@ -1,8 +1,6 @@
 //! Drivers that are missing: the window opens all the same and shows the same picture.
 
 use super::Desk;
-use super::edits::show_one_to_one;
-use super::server::Shot;
 use super::twin::Twin;
 
 /// Opens the window with drivers hidden by `variables`.
@@ -11,10 +9,7 @@ fn opens_with(variables: &[(&'static str, &'static str)]) {
     desk.variables = variables.to_vec();
     desk.start();
     let mut twin = Twin::new(&desk.file("scene.toml"), None);
-    let blank = Shot { size: [1280, 720], pixels: vec![[0; 3]; 1280 * 720] };
-    desk.until_changed(&blank, twin.place("1:1"), "the window draws");
-    // an enlarged picture is rounded to the screen's pixels by the driver, this one is not
-    show_one_to_one(&mut desk, &mut twin);
+    desk.show_one_to_one(&mut twin);
     assert_eq!(desk.messages(), "", "{variables:?}");
 }
 

@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus};
 use std::time::{Duration, Instant};
 
+use eframe::egui::accesskit::Role;
 use eframe::egui::{Pos2, Rect};
 use serde_json::Value;
 
@@ -23,7 +24,7 @@ use server::{Ending, Server, Shot};
 use twin::Twin;
 
 /// Longest wait for anything: the machine may be busy.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_secs(8);
 /// Size of most screens.
 const SIZE: [u16; 2] = [1280, 720];
 /// Where the pointer rests: under the outline's lists, where nothing reacts to it.
@@ -85,8 +86,23 @@ impl Desk {
         let mut desk = Desk::new(SIZE);
         desk.start();
         let mut twin = Twin::new(&desk.file("scene.toml"), None);
-        desk.until_like(&mut twin, "the scene is open");
+        desk.show_one_to_one(&mut twin);
         (desk, twin)
+    }
+
+    /// Waits for the window, and shows one pixel of the picture on one of the screen: what is
+    /// enlarged is rounded to the screen's pixels in a way of the driver's own.
+    fn show_one_to_one(&mut self, twin: &mut Twin) {
+        let button = twin.place("1:1");
+        self.until_part_like(twin, button, "the window draws");
+        // the first picture is shown as large as the window allows, whatever was asked for before
+        let middle = twin.rect(Role::Image, "picture").center();
+        self.until("a picture shows", |desk| desk.server.shot().pixel(middle) != EMPTY);
+        twin.click(button.center());
+        twin.hover(REST);
+        self.click(button.center());
+        self.point(REST);
+        self.until_like(twin, "the picture has its own size");
     }
 
     fn file(&self, name: &str) -> PathBuf {
@@ -155,12 +171,16 @@ impl Desk {
 
     /// Waits until the screen shows what the twin shows, the status line apart: it tells times.
     fn until_like(&mut self, twin: &mut Twin, what: &str) {
-        let wanted = twin.shot();
-        let apart = [status_line(&wanted)];
+        let part = Rect::from_min_max(Pos2::ZERO, status_line().right_top());
+        self.until_part_like(twin, part, what);
+    }
+
+    /// Waits until a part of the screen shows what the twin shows there.
+    fn until_part_like(&mut self, twin: &mut Twin, part: Rect, what: &str) {
         let start = Instant::now();
         loop {
-            let shot = self.server.shot();
-            let different = shot.differences(&wanted, wanted.all(), &apart, TOLERANCE);
+            let (shot, wanted) = (self.server.shot(), twin.shot());
+            let different = shot.differences(&wanted, part, &[], TOLERANCE);
             if different.is_empty() {
                 return;
             }
@@ -188,10 +208,19 @@ impl Desk {
         self.server.move_to(at);
     }
 
-    fn click(&self, at: Pos2) {
-        self.point(at);
-        self.server.xdotool(&["mousedown", "1"]);
-        self.server.xdotool(&["mouseup", "1"]);
+    /// Does something with the pointer, and waits until the screen answers around a point: what
+    /// comes faster than the window draws may be taken for one event.
+    fn watched(&mut self, at: Pos2, what: &str, act: impl Fn(&Desk)) {
+        let around = Rect::from_center_size(at, [24.0, 24.0].into());
+        let before = self.server.shot();
+        act(self);
+        self.until_changed(&before, around, what);
+    }
+
+    fn click(&mut self, at: Pos2) {
+        self.watched(at, "it lights up", |desk| desk.point(at));
+        self.watched(at, "it is held", |desk| desk.server.xdotool(&["mousedown", "1"]));
+        self.watched(at, "it is let go", |desk| desk.server.xdotool(&["mouseup", "1"]));
     }
 
     /// Presses keys, such as `ctrl+s`.
@@ -199,19 +228,12 @@ impl Desk {
         self.server.xdotool(&["key", keys]);
     }
 
-    /// Drags a handle with the pointer; each step waits until the screen shows the one before.
+    /// Drags a handle with the pointer.
     fn drag(&mut self, from: Pos2, to: Pos2) {
-        let handle = Rect::from_center_size(from, [24.0, 24.0].into());
-        let before = self.server.shot();
-        self.point(from);
-        self.until_changed(&before, handle, "the handle lights up");
-        let lit = self.server.shot();
-        self.server.xdotool(&["mousedown", "1"]);
-        self.until_changed(&lit, handle, "the handle is held");
-        let held = self.server.shot();
-        self.point(to);
-        self.until_changed(&held, handle, "the handle moves away");
-        self.server.xdotool(&["mouseup", "1"]);
+        self.watched(from, "the handle lights up", |desk| desk.point(from));
+        self.watched(from, "it is held", |desk| desk.server.xdotool(&["mousedown", "1"]));
+        self.watched(to, "it moves", |desk| desk.point(to));
+        self.watched(to, "it is let go", |desk| desk.server.xdotool(&["mouseup", "1"]));
         self.point(REST);
     }
 
@@ -244,14 +266,17 @@ impl Desk {
     }
 }
 
+/// The ground on which the picture lies.
+const EMPTY: [u8; 3] = [40; 3];
+
 /// What two ways of drawing the same window may differ by, in steps of 255: glyphs and rounded
 /// corners are blended in other places of the pipeline.
 const TOLERANCE: u8 = 2;
 
 /// The line at the lower edge.
-fn status_line(shot: &Shot) -> Rect {
-    let all = shot.all();
-    Rect::from_min_max(Pos2::new(0.0, all.bottom() - 30.0), all.max)
+fn status_line() -> Rect {
+    let [width, height] = SIZE.map(f32::from);
+    Rect::from_min_max(Pos2::new(0.0, height - 30.0), Pos2::new(width, height))
 }
 
 /// The bytes that a fresh render of a scene file gives.

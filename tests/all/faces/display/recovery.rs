@@ -29,15 +29,14 @@ fn recover(desk: &mut Desk) -> Twin {
     let folder = desk.file("state/rayforest/unsaved");
     age(&folder);
     let mut twin = Twin::new(&desk.file("scene.toml"), Some(&folder));
-    let button = twin.place("Recover").center();
+    let button = twin.place("Recover");
     desk.start();
-    desk.until_like(&mut twin, "the work is offered");
-    twin.click(button);
-    desk.click(button);
+    let offer = twin.place("Unsaved work was found").union(button);
+    desk.until_part_like(&mut twin, offer, "the work is offered");
+    twin.click(button.center());
+    desk.click(button.center());
     twin.until_exact();
-    twin.hover(super::REST);
-    desk.point(super::REST);
-    desk.until_like(&mut twin, "the work is open");
+    desk.show_one_to_one(&mut twin);
     twin
 }
 

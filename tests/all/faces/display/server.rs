@@ -151,6 +151,11 @@ impl Shot {
             .collect()
     }
 
+    /// The pixel at a point.
+    pub(super) fn pixel(&self, at: Pos2) -> [u8; 3] {
+        self.pixels[at.y as usize * self.size[0] + at.x as usize]
+    }
+
     /// The whole of it.
     pub(super) fn all(&self) -> Rect {
         Rect::from_min_size(Pos2::ZERO, self.size.map(|n| n as f32).into())

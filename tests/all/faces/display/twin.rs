@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Key, Modifiers, Pos2, Rect, vec2};
+use eframe::egui_wgpu::RendererOptions;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use rayforest::session::Options;
@@ -36,7 +37,8 @@ impl Twin {
         let harness = Harness::builder()
             .with_size(vec2(f32::from(SIZE[0]), f32::from(SIZE[1])))
             .with_max_steps(1000)
-            .wgpu()
+            .with_render_cursor(false)
+            .with_render_options(RendererOptions::default())
             .build_eframe(|context| {
                 let setup = Setup {
                     options: Options::default(),
@@ -124,8 +126,9 @@ impl Twin {
         self.rest();
     }
 
-    /// What it looks like.
+    /// What it looks like, now that more of it may have come: costs arrive by themselves.
     pub(super) fn shot(&mut self) -> Shot {
+        self.harness.run_steps(2);
         let image = self.harness.render().expect("lavapipe is installed: tests/run installs it");
         let (pixels, _) = image.as_raw().as_chunks::<4>();
         let pixels = pixels.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
