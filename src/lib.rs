@@ -32,6 +32,15 @@
 //!   coefficient; no number that depends on a running counter.
 //! * **Geometry is f64** and holds no epsilon with a length in it. The f32 hierarchy only leaves out
 //!   what cannot be hit.
+//! * **The window waits for nobody.** A [`Live`](session::live::Live) session has a thread that owns
+//!   the pictures and shades, one that traces, one that writes pictures; calls return at once, the
+//!   newest wish wins, a lock is held only to move pointers. What is on the screen is always a
+//!   session with kept trees, coarse or whole, so that it can be edited while the next one is traced.
+//! * **Widgets write into a clone of the scene**; what differs is one step of the document's history
+//!   and one wish to the session. The inspector visits the same list of fields as the reader and the
+//!   writer of scene files: a parameter without a control cannot be written.
+//! * **The text belongs to the person.** A document keeps the text of its file and changes single
+//!   values in it; whatever is written is read back and compared bit for bit first.
 //! * **Absences.** `shade` never sees `geometry`; nothing below `cli` prints; nothing is `unsafe`;
 //!   there are no globals.
 //!
@@ -63,5 +72,6 @@ pub mod session;
 pub mod document;
 // faces
 pub mod bench;
-pub mod cli;
 pub mod viewer;
+// the command line opens the window
+pub mod cli;

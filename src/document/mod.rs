@@ -11,6 +11,8 @@ pub mod settings;
 mod splice;
 mod step;
 #[cfg(test)]
+mod tests;
+#[cfg(test)]
 mod tests_patch;
 
 use std::fmt;

@@ -154,7 +154,7 @@ impl Scan<'_> {
             let span = event.span();
             match event.kind() {
                 EventKind::SimpleKey => {
-                    let raw = Source::new(self.text).get(&event)?;
+                    let raw = Source::new(self.text).get(event)?;
                     let mut name = Cow::Borrowed("");
                     raw.decode_key(&mut name, &mut ());
                     names.push(name.into_owned());

@@ -239,8 +239,10 @@ impl Patch {
     /// Inserts a value or a table of another kind, and removes the one in its place.
     fn variant(&mut self, place: &Place, node: &Node, rival: Option<&Node>) -> Option<()> {
         let table: Vec<&str> = place.path.iter().map(String::as_str).collect();
-        let is_asked_for = self.defaults.asks_for(&table, node);
         let rival = rival.map(|rival| place.of(&rival.key));
+        // in the place of what was spelled out, a default is spelled out too: it may be all there is
+        let is_spelled = rival.as_ref().is_some_and(|rival| self.splice.spells(rival));
+        let is_asked_for = is_spelled || self.defaults.asks_for(&table, node);
         if let Some(rival) = &rival
             && is_asked_for
             && self.splice.replace(rival, &node.key, &node.inline())?
@@ -270,7 +272,7 @@ impl Patch {
                 let after: Vec<Vec<String>> = lists.iter().map(alone).collect();
                 self.splice.insert_block(&block, &before, &after)
             }
-            _ => self.splice.insert_block(&block, &[], &[path.clone()]),
+            _ => self.splice.insert_block(&block, &[], std::slice::from_ref(path)),
         }
     }
 
@@ -279,7 +281,9 @@ impl Patch {
         let Place { path, before, after } = place;
         let mut after = after.clone();
         after.extend(keys(present));
-        let neighbour = before.last().or(after.first()).map(|key| place.of(key));
+        let spelled = |key: &&String| self.splice.spells(&place.of(key));
+        let neighbour = before.last().or_else(|| after.iter().find(spelled));
+        let neighbour = neighbour.map(|key| place.of(key));
         let is_pair = match &neighbour {
             Some(neighbour) => self.splice.is_pairs(neighbour),
             None => self.splice.takes_pairs(path) && !self.splice.has_header(path),

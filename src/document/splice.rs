@@ -274,6 +274,11 @@ impl Splice {
         self.outline.pairs_of(path).next().is_some()
     }
 
+    /// Whether the text says anything of the value or table `path`.
+    pub(super) fn spells(&self, path: &[String]) -> bool {
+        self.is_pairs(path) || self.outline.headers_of(path).next().is_some()
+    }
+
     /// Inserts `key = value` into a table that [takes pairs](Splice::takes_pairs): after the nearest
     /// of the keys `before` that is there, or else before the nearest of `after`.
     pub(super) fn insert_pair(
@@ -359,7 +364,8 @@ impl Splice {
             (at..at, self.closed(at) + &block)
         } else if let Some(index) = after.iter().find_map(first) {
             let at = self.block(index).start;
-            let block = block.strip_prefix(newline).unwrap_or(&block);
+            let is_apart = at == 0 || self.is_blank(self.line_start(at - 1)..at);
+            let block = block.strip_prefix(newline).filter(|_| is_apart).unwrap_or(&block);
             (at..at, format!("{block}{newline}"))
         } else {
             let at = self.text.len();

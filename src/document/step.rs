@@ -229,28 +229,36 @@ fn hex(channels: &[f64]) -> Option<String> {
     inside.then(|| format!("#{:02x}{:02x}{:02x}", bytes[0], bytes[1], bytes[2]))
 }
 
+/// Enough to tell any two numbers apart.
+const MOST_DIGITS: usize = 17;
+
 /// As few digits as tell the two apart and are within a half per cent of the larger number.
 fn short(old: &[f64], new: &[f64]) -> (String, String) {
     let all = || old.iter().chain(new);
     let largest = all().fold(0.0f64, |largest, x| largest.max(x.abs()));
     let is_plain = largest == 0.0 || (1e-3..1e7).contains(&largest);
-    for digits in 0..17 {
+    let mut digits = 0;
+    loop {
         let one = |x: &f64| match is_plain {
             // whole numbers need no zeros
             true if x.fract() == 0.0 => format!("{x:.0}"),
             true => format!("{x:.digits$}"),
             false => format!("{x:.digits$e}"),
         };
-        let exact =
-            |x: &f64| one(x).parse::<f64>().is_ok_and(|shown| (shown - x).abs() <= 0.005 * largest);
+        // as numbers: 1.00 is not told apart from 1
+        let rounded = |x: &f64| one(x).parse::<f64>().unwrap_or(*x);
+        let exact = |x: &f64| (rounded(x) - x).abs() <= 0.005 * largest;
+        let each = |numbers: &[f64]| numbers.iter().map(one).collect::<Vec<_>>();
         let list = |numbers: &[f64]| match numbers {
             [number] => one(number),
-            numbers => format!("[{}]", numbers.iter().map(one).collect::<Vec<_>>().join(", ")),
+            numbers => format!("[{}]", each(numbers).join(", ")),
         };
-        let (shown_old, shown_new) = (list(old), list(new));
-        if digits == 16 || (all().all(exact) && shown_old != shown_new) {
-            return (shown_old, shown_new);
+        let count = old.len().max(new.len());
+        let mut pairs = old.iter().cycle().zip(new.iter().cycle()).take(count);
+        let is_told_apart = pairs.any(|(old, new)| rounded(old) != rounded(new));
+        if digits == MOST_DIGITS || (all().all(exact) && is_told_apart) {
+            return (list(old), list(new));
         }
+        digits += 1;
     }
-    (String::new(), String::new())
 }

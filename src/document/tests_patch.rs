@@ -13,7 +13,7 @@ use crate::scene::mesh::Mesh;
 use crate::scene::path::{Parameter, parameters, set};
 use crate::scene::range::Kind;
 use crate::scene::read::{Meshes, text_with};
-use crate::scene::write::tree;
+use crate::scene::write::{self, tree};
 use crate::scene::{Lens, Light, LightPlace, Material, Paint, Scene, Shape, Solid};
 use crate::scene::{check, fields};
 
@@ -141,7 +141,8 @@ fn read(text: &str) -> Scene {
 /// The text of the edited scene, which must read back as that scene.
 fn saved(text: &str, old: &Scene, new: &Scene) -> String {
     let patched = patch(text, old, new);
-    assert!(!patched.comments_lost, "written anew:\n{text}\n{:#?}\n{:#?}", old, new);
+    let wanted = write::text(new);
+    assert!(!patched.comments_lost, "{text}\n--- had to be written anew as ---\n{wanted}");
     let back = read(&patched.text);
     assert!(same_bits(&back, new) && tree(&back) == tree(new), "{}", patched.text);
     let newlines = |text: &str| (text.matches("\r\n").count(), text.matches('\n').count());
@@ -215,7 +216,7 @@ fn edits_of_values_touch_their_lines_only_and_keep_every_comment() {
     for text in texts() {
         let scene = read(&text);
         assert_eq!(patch(&text, &scene, &scene).text, text);
-        for round in 0..120 {
+        for round in 0..60 {
             let mut edited = scene.clone();
             let edits = 1 + round % 4;
             for _ in 0..edits {
@@ -293,7 +294,7 @@ fn things_are_added_removed_renamed_and_changed_in_kind() {
     let mut random = Random(2);
     for text in texts() {
         let scene = read(&text);
-        for round in 0..150 {
+        for round in 0..60 {
             let mut edited = scene.clone();
             for _ in 0..1 + round % 5 {
                 restructure(&mut edited, &mut random);
@@ -305,4 +306,47 @@ fn things_are_added_removed_renamed_and_changed_in_kind() {
             }
         }
     }
+}
+
+#[test]
+fn things_change_places_with_their_comments() {
+    let mut random = Random(3);
+    for text in texts() {
+        let scene = read(&text);
+        // one of the spellings has a solid in two pieces and a list half in pairs, half in blocks
+        let [materials, solids] = [text.contains("fourteen"), text.contains("ball-2.sphere")];
+        for _ in 0..10 {
+            let mut edited = scene.clone();
+            if edited.lights.len() > 1 {
+                let index = random.below(edited.lights.len());
+                edited.lights.rotate_left(index);
+            }
+            if edited.solids.len() > 1 && !solids {
+                let index = random.below(edited.solids.len());
+                edited.solids.swap(0, index);
+            }
+            if edited.materials.len() > 1 && !materials {
+                edited.materials.swap(0, 1);
+                for solid in &mut edited.solids {
+                    solid.material = [1, 0].get(solid.material).copied().unwrap_or(solid.material);
+                }
+            }
+            let new = saved(&text, &scene, &edited);
+            let (mut old, mut new) = (comments(&text), comments(&new));
+            old.sort_unstable();
+            new.sort_unstable();
+            assert_eq!(old, new);
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_edited_in_place_is_written_anew_and_said() {
+    let text = nasty();
+    let scene = read(&text);
+    let mut edited = scene.clone();
+    edited.materials.swap(0, 2);
+    let patched = patch(&text, &scene, &edited);
+    assert!(patched.comments_lost);
+    assert!(same_bits(&read(&patched.text), &edited));
 }

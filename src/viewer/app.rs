@@ -179,6 +179,12 @@ impl App {
             style::apply(ui.ctx(), &self.settings);
             self.remember_settings();
         }
+        // Ctrl with plus and minus zooms the window by itself: that is remembered too.
+        let zoom = (ui.ctx().zoom_factor() * 100.0).round() as u32;
+        if self.settings == before && zoom != self.settings.zoom_percent {
+            self.settings.zoom_percent = zoom;
+            self.remember_settings();
+        }
         Panel::bottom("status").frame(bar).show(ui, |ui| {
             let status = self.live.status();
             commands.extend(status_ui(ui, &status, self.shown.as_ref()));
@@ -190,7 +196,7 @@ impl App {
         self.selection = self.selection.within(edited);
         let outline = Panel::left("outline").default_size(180.0).min_size(120.0);
         let chosen = outline.show(ui, |ui| outline_ui(ui, edited, self.selection)).inner;
-        let inspector = Panel::right("inspector").default_size(400.0).min_size(360.0);
+        let inspector = Panel::right("inspector").default_size(440.0).min_size(380.0);
         let inspected = inspector.show(ui, |ui| {
             let costs = self.live.costs();
             let known = Known { saved: self.document.saved_scene(), costs: &costs };

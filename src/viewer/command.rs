@@ -102,18 +102,16 @@ impl Command {
             Command::Fit => keys(Modifiers::NONE, Key::F),
             Command::ActualSize => keys(Modifiers::NONE, Key::Num1),
             Command::CameraTool => keys(Modifiers::NONE, Key::C),
+            Command::ZoomIn => keys(Modifiers::NONE, Key::Plus),
+            Command::ZoomOut => keys(Modifiers::NONE, Key::Minus),
             Command::Stop => keys(Modifiers::NONE, Key::Escape),
-            Command::New(_)
-            | Command::OpenRecent(_)
-            | Command::ZoomIn
-            | Command::ZoomOut
-            | Command::Resume => None,
+            Command::New(_) | Command::OpenRecent(_) | Command::Resume => None,
         }
     }
 
     /// The commands with shortcuts. Those with more modifiers come first, so that Shift-Ctrl-Z is
     /// not taken for Ctrl-Z.
-    pub(super) const WITH_SHORTCUTS: [Command; 11] = [
+    pub(super) const WITH_SHORTCUTS: [Command; 13] = [
         Command::SaveAs,
         Command::Redo,
         Command::Open,
@@ -123,6 +121,8 @@ impl Command {
         Command::Undo,
         Command::Fit,
         Command::ActualSize,
+        Command::ZoomIn,
+        Command::ZoomOut,
         Command::CameraTool,
         Command::Stop,
     ];

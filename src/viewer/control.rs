@@ -2,8 +2,8 @@
 
 use eframe::egui::{Align, CollapsingHeader, Id, Stroke};
 use eframe::egui::{
-    Button, Checkbox, Color32, ComboBox, DragValue, Label, Layout, Response, RichText, Sense,
-    Slider, SliderClamping, Ui, pos2, vec2,
+    Button, Checkbox, Color32, ComboBox, DragValue, Label, Layout, Rect, Response, RichText, Sense,
+    Slider, SliderClamping, Ui, UiBuilder, pos2, vec2,
 };
 use glam::DVec3;
 
@@ -54,20 +54,13 @@ pub(super) fn control_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> Row
         points_ui(ui, row, points, &mut outcome);
         return outcome;
     }
-    ui.horizontal(|ui| {
-        name_ui(ui, row, slot, &mut outcome);
-        let width = (ui.available_width() - BADGE - ui.spacing().item_spacing.x).max(80.0);
-        let height = ui.spacing().interact_size.y;
-        let layout = Layout::left_to_right(Align::Center);
-        ui.allocate_ui_with_layout(vec2(width, height), layout, |ui| {
-            ui.set_min_width(width);
-            outcome.changed |= value_ui(ui, row, slot);
-        });
-        // The name of a mesh file is not edited here.
-        if !matches!(slot, Slot::Mesh { .. }) {
-            badge_ui(ui, row.key, row.cost, ui.available_width().min(BADGE));
-        }
-    });
+    let (name, value, badge) = columns(ui);
+    column_ui(ui, name, |ui| name_ui(ui, row, slot, &mut outcome));
+    column_ui(ui, value, |ui| outcome.changed |= value_ui(ui, row, slot));
+    // The name of a mesh file is not edited here.
+    if !matches!(slot, Slot::Mesh { .. }) {
+        column_ui(ui, badge, |ui| badge_ui(ui, row.key, row.cost, BADGE));
+    }
     if let Slot::Coefficient(color, range) = slot
         && shows_channels(ui, row, color)
     {
@@ -76,22 +69,34 @@ pub(super) fn control_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> Row
     outcome
 }
 
+/// Takes a row of the panel's width and cuts it into name, value and badge: the same in every row,
+/// whatever is in it.
+fn columns(ui: &mut Ui) -> (Rect, Rect, Rect) {
+    let gap = ui.spacing().item_spacing.x;
+    let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
+    let (row, _) = ui.allocate_exact_size(size, Sense::hover());
+    let (left, right) = (row.left() + NAME, (row.right() - BADGE).max(row.left() + NAME + 80.0));
+    let span = |from: f32, to: f32| Rect::from_x_y_ranges(from..=to, row.y_range());
+    (span(row.left(), left), span(left + gap, right - gap), span(right, right + BADGE))
+}
+
+/// Fills one column of a row.
+fn column_ui<R>(ui: &mut Ui, column: Rect, body: impl FnOnce(&mut Ui) -> R) -> R {
+    let layout = Layout::left_to_right(Align::Center);
+    body(&mut ui.new_child(UiBuilder::new().max_rect(column).layout(layout)))
+}
+
 /// The name, which takes the saved value back when it is double-clicked.
 fn name_ui(ui: &mut Ui, row: &Row<'_>, slot: &Slot<'_>, outcome: &mut RowOutcome) {
-    let height = ui.spacing().interact_size.y;
-    let layout = Layout::left_to_right(Align::Center);
-    ui.allocate_ui_with_layout(vec2(NAME, height), layout, |ui| {
-        ui.set_min_width(NAME);
-        ui.spacing_mut().item_spacing.x = 3.0;
-        if row.saved.is_some() {
-            let mark = Button::new(RichText::new("•").strong()).frame(false).small();
-            let name = format!("reset {}", row.key);
-            let mark = ui.add(mark).accessible_name(name);
-            outcome.reset |= explained(mark, row, slot.range()).clicked();
-        }
-        let label = Label::new(row.key).truncate().sense(Sense::click());
-        outcome.reset |= explained(ui.add(label), row, slot.range()).double_clicked();
-    });
+    ui.spacing_mut().item_spacing.x = 3.0;
+    if row.saved.is_some() {
+        let mark = Button::new(RichText::new("•").strong()).frame(false).small();
+        let name = format!("reset {}", row.key);
+        let mark = ui.add(mark).accessible_name(name);
+        outcome.reset |= explained(mark, row, slot.range()).clicked();
+    }
+    let label = Label::new(row.key).truncate().sense(Sense::click());
+    outcome.reset |= explained(ui.add(label), row, slot.range()).double_clicked();
 }
 
 /// The control itself; whether the value changed.
@@ -275,14 +280,10 @@ fn shows_channels(ui: &Ui, row: &Row<'_>, color: &Rgb) -> bool {
 fn channels_ui(ui: &mut Ui, row: &Row<'_>, color: &mut Rgb, range: Range) -> bool {
     let mut changed = false;
     for (channel, name) in color.0.iter_mut().zip(["red", "green", "blue"]) {
-        ui.horizontal(|ui| {
-            ui.add_space(NAME - 40.0);
-            let size = vec2(40.0, ui.spacing().interact_size.y);
-            ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
-                ui.set_min_width(40.0);
-                ui.weak(name);
-            });
-            ui.set_max_width(ui.max_rect().width() - BADGE - ui.spacing().item_spacing.x);
+        let (label, value, _) = columns(ui);
+        let right_to_left = Layout::right_to_left(Align::Center);
+        ui.new_child(UiBuilder::new().max_rect(label).layout(right_to_left)).weak(name);
+        column_ui(ui, value, |ui| {
             let mut wide = f64::from(*channel);
             if number_ui(ui, row, &format!("{} {name}", row.key), &mut wide, range) {
                 *channel = wide as f32;

@@ -332,7 +332,7 @@ impl App {
                 self.notices.say(format!("saved {}{lost}", save.path.display()));
                 self.remember_file(&save.path.clone());
                 self.document.saved(save);
-                // Meshes may have other names now, and kept work is out of date.
+                // Another folder may have changed the paths of meshes, and nothing is unsaved now.
                 self.show_scene();
                 if let Some(next) = next {
                     // There may be edits since.

@@ -24,7 +24,7 @@ pub enum WindowError {
 impl fmt::Display for WindowError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            WindowError::NoDisplay(cause) => write!(f, "no display to open a window on: {cause}"),
+            WindowError::NoDisplay(cause) => write!(f, "no display to open a window on ({cause})"),
             WindowError::NoGraphics(cause) => {
                 write!(f, "neither Vulkan nor OpenGL draws on this display: {cause}")
             }
@@ -38,14 +38,22 @@ pub fn run(scene: Option<PathBuf>, options: Options) -> Result<(), WindowError> 
         // The same process may try again with another renderer.
         Err(eframe::Error::Wgpu(first)) => {
             open(Renderer::Glow, scene, options).map_err(|second| match second {
-                eframe::Error::WinitEventLoop(e) => WindowError::NoDisplay(e.to_string()),
+                eframe::Error::WinitEventLoop(e) => no_display(&e.to_string()),
                 second => WindowError::NoGraphics(format!("{first}; {second}")),
             })
         }
-        Err(eframe::Error::WinitEventLoop(e)) => Err(WindowError::NoDisplay(e.to_string())),
+        Err(eframe::Error::WinitEventLoop(e)) => Err(no_display(&e.to_string())),
         Err(other) => Err(WindowError::NoGraphics(other.to_string())),
         Ok(()) => Ok(()),
     }
+}
+
+/// winit begins with the place in its own source, which tells the person nothing.
+fn no_display(message: &str) -> WindowError {
+    let after = message.split_once(".rs:").and_then(|(_, rest)| rest.split_once(": "));
+    let cause = after.map_or(message, |(_, cause)| cause);
+    let line = cause.lines().next().unwrap_or_default();
+    WindowError::NoDisplay(line.trim_end_matches('.').to_owned())
 }
 
 fn open(renderer: Renderer, scene: Option<PathBuf>, options: Options) -> eframe::Result {
@@ -58,6 +66,8 @@ fn open(renderer: Renderer, scene: Option<PathBuf>, options: Options) -> eframe:
         viewport,
         renderer,
         wgpu_options: wgpu_options(),
+        // The picture reaches the screen as it is.
+        dithering: false,
         ..NativeOptions::default()
     };
     let setup = move |context: &eframe::CreationContext<'_>| {
@@ -84,4 +94,19 @@ fn wgpu_options() -> WgpuConfiguration {
         ..WgpuSetupCreateNew::without_display_handle()
     };
     WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..WgpuConfiguration::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cause_is_told_without_its_place_in_a_source_file() {
+        let told = |message| no_display(message).to_string();
+        assert_eq!(
+            told("os error at /home/me/winit/mod.rs:765: neither DISPLAY nor another is set."),
+            "no display to open a window on (neither DISPLAY nor another is set)"
+        );
+        assert_eq!(told("no such thing"), "no display to open a window on (no such thing)");
+    }
 }

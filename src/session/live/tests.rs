@@ -287,7 +287,7 @@ fn a_scene_that_cannot_be_traced_is_reported_and_the_old_picture_stays() {
     window.want(&large);
     window.wait("failed", |w| !w.events.is_empty() && !is_tracing(w));
     assert!(matches!(&window.events[..], [Event::Failed(text)] if text.contains("budget")));
-    let status = window.status;
+    let status = window.status.clone();
     assert!(status.held && !status.in_step);
     assert_eq!(window.shown().stage, Stage::Whole);
     assert!(*window.shown().frame == *before && *window.shown().scene == scene);
@@ -368,7 +368,7 @@ fn an_export_is_cancelled_or_fails_and_no_file_is_left() {
     let wanted = Export { path, format: Format::Png8, size: [1600, 900] };
     window.live.export(wanted.clone());
     window.wait("a job", is_tracing);
-    assert!(window.status.job.unwrap().what.contains("large.png"));
+    assert!(window.status.job.clone().unwrap().what.contains("large.png"));
     window.live.cancel();
     window.wait("cancelled", |w| !is_tracing(w));
     assert!(window.status.in_step && !window.status.held);
@@ -415,8 +415,10 @@ fn watched_costs_follow_the_scene_shown() {
     let paths = ["materials.glass.reflect", "camera.eye", "no.such"].map(String::from);
     window.live.watch_costs(paths.to_vec());
     window.wait("costs", |w| w.live.costs().len() == 2);
-    let expected = |scene: &Scene| {
-        let session = fresh(scene);
+    // What is kept, and with it the limits, comes from the trace, not from the edits after it.
+    let expected = |edited: &Scene| {
+        let mut session = fresh(&scene);
+        session.edit_without_rays(&Arc::new(edited.clone())).unwrap();
         let cost =
             |path: &String| Some((path.clone(), crate::session::cost::cost(&session, path)?));
         paths.iter().filter_map(cost).collect::<BTreeMap<_, _>>()

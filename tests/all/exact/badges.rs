@@ -81,8 +81,8 @@ fn lie(session: &mut Session, parameter: &Parameter, cost: Cost) -> Option<Strin
                 .or_else(|| claim(&raised(&scene, parameter, half), &instant))
         }
         Cost::Instant => {
-            let ends = range.filter(|_| parameter.kind != Kind::Whole);
-            let ends = ends.map_or(vec![], |r| vec![r.low, r.high]);
+            let numeric = matches!(parameter.kind, Kind::Coefficient | Kind::Number);
+            let ends = range.filter(|_| numeric).map_or(vec![], |r| vec![r.low, r.high]);
             let ends = ends.into_iter().map(|end| raised(&scene, parameter, end));
             let values: Vec<Scene> = ends.chain(others(&scene, parameter)).collect();
             values.iter().find_map(|edited| claim(edited, &instant))

@@ -191,42 +191,6 @@ fn inspect_shows_one_tree_or_all() {
 }
 
 #[test]
-fn without_a_command_it_renders_re_shades_and_prints_both_times() {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
-    let ran = succeed(folder.path(), &["scene.toml"]);
-    let lines: Vec<&str> = ran.results.lines().collect();
-    assert_eq!(lines.len(), 5, "{}", ran.results);
-    assert!(lines[0].starts_with("traced 48×27, 2 samples per pixel"), "{}", lines[0]);
-    assert!(lines[0].ends_with(" ms"), "{}", lines[0]);
-    for (line, class) in lines[1..].iter().zip(["reshade", "reshade", "refold", "reshade"]) {
-        assert!(line.contains(&format!(": {class} in ")), "{line}");
-        assert!(line.contains(" ms, 0 rays") && line.ends_with(" times faster"), "{line}");
-    }
-    let pictures = ["rayforest-edit-1.png", "rayforest-edit-2.png", "rayforest-edit-3.png"];
-    let mut names = pictures.to_vec();
-    names.extend(["rayforest-edit-4.png", "rayforest.png", "scene.toml"]);
-    assert_eq!(names_in(folder.path()), names);
-    for name in names.iter().filter(|name| name.ends_with(".png")) {
-        decode_png(&folder.path().join(name)).unwrap();
-        assert!(ran.messages.contains(&format!("wrote {name}")), "{}", ran.messages);
-    }
-}
-
-#[test]
-fn without_anything_it_shows_the_built_in_scene() {
-    let folder = tempfile::tempdir().unwrap();
-    let ran = succeed(folder.path(), &[]);
-    assert!(ran.results.starts_with("traced 1280×720"), "{}", ran.results);
-    assert_eq!(ran.results.matches(" times faster").count(), 4, "{}", ran.results);
-    let pictures = names_in(folder.path());
-    assert_eq!(pictures.len(), 5, "{pictures:?}");
-    for name in &pictures {
-        assert_eq!(decode_png(&folder.path().join(name)).unwrap().0, [1280, 720], "{name}");
-    }
-}
-
-#[test]
 fn help_is_a_result_and_names_every_command() {
     let folder = tempfile::tempdir().unwrap();
     let ran = run(folder.path(), &["--help"]);

@@ -2,6 +2,8 @@
 
 mod bad_input;
 mod command_line;
+#[cfg(target_os = "linux")]
+mod display;
 mod killed;
 mod window;
 
@@ -35,10 +37,16 @@ floor = { plane = { normal = [0, 0, 1], offset = -1 }, material = "tiles" }
 ball = { sphere = { center = [0, 0, 0], radius = 1 }, material = "mirror" }
 "#;
 
-/// The program with its working folder.
+/// The variables that name a display.
+const DISPLAYS: [&str; 3] = ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"];
+
+/// The program with its working folder, on a machine without a display.
 fn rayforest(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_rayforest"));
     command.current_dir(folder).args(arguments);
+    for display in DISPLAYS {
+        command.env_remove(display);
+    }
     command
 }
 

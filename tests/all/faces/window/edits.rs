@@ -17,7 +17,7 @@ fn a_dragged_slider_changes_the_picture_without_a_ray() {
     assert_ne!(before, after);
     window.until_text("· 0 rays");
     let undo = window.undo_name().expect("a step").to_owned();
-    assert!(undo.starts_with("diffuse of mirror 0.3 → "), "{undo}");
+    assert!(undo.starts_with("diffuse of mirror 0.30 → "), "{undo}");
 
     window.click("Undo");
     window.until_exact();

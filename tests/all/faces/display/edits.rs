@@ -1,0 +1,78 @@
+//! A slider dragged by the pointer: what changes on the screen, and what does not.
+
+use eframe::egui::accesskit::Role;
+use eframe::egui::{Pos2, Rect};
+
+use super::server::Shot;
+use super::twin::Twin;
+use super::{Desk, REST, SIZE, status_line};
+
+/// A slider of the twin: its row across the inspector, its handle, and a place further right.
+fn slider(twin: &Twin, name: &str) -> (Rect, Pos2, Pos2) {
+    let rect = twin.rect(Role::Slider, name);
+    let inspector = twin.rect(Role::Image, "picture").right();
+    let row = Rect::from_x_y_ranges(inspector..=f32::from(SIZE[0]), rect.y_range());
+    let along = |share: f32| Pos2::new(rect.left() + rect.width() * share, rect.center().y);
+    (row, rect.center(), along(0.8))
+}
+
+/// Selects the mirror and drags its diffuse slider, on the desk and on its twin. Gives the screens
+/// before and after, and all places where they may differ.
+pub(super) fn drag_diffuse(desk: &mut Desk, twin: &mut Twin) -> (Shot, Shot, Vec<Rect>) {
+    let material = twin.rect(Role::Button, "mirror").center();
+    twin.click(material);
+    desk.click(material);
+    for step in [twin.rect(Role::Slider, "diffuse").center(), REST] {
+        twin.hover(step);
+        desk.point(step);
+    }
+    desk.until_like(twin, "the material is shown");
+    let before = desk.server.shot();
+    let mut places = vec![twin.rect(Role::Image, "picture"), status_line()];
+    places.extend([twin.place("Undo"), twin.place("scene.toml")]);
+    let (row, from, to) = slider(twin, "diffuse");
+    places.push(row);
+    twin.drag(from, to);
+    twin.until_exact();
+    twin.hover(REST);
+    places.push(twin.place("scene.toml •"));
+    desk.drag(from, to);
+    desk.until_like(twin, "the picture shows the edit");
+    (before, desk.server.shot(), places)
+}
+
+#[test]
+fn a_dragged_slider_changes_the_picture_its_row_the_status_and_the_marks_alone() {
+    let (mut desk, mut twin) = Desk::with_scene();
+    let (before, after, places) = drag_diffuse(&mut desk, &mut twin);
+    let elsewhere = before.differences(&after, before.all(), &places, 0);
+    if !elsewhere.is_empty() {
+        let (a, b) = (before.keep("display-before"), after.keep("display-after"));
+        panic!("{} and {} differ at {:?} …", a.display(), b.display(), elsewhere[0]);
+    }
+    for place in &places {
+        let changed = before.differences(&after, *place, &[], 0);
+        assert!(!changed.is_empty(), "nothing changed in {place:?}");
+    }
+    let undo = twin.app().document().undo_name().expect("a step").to_owned();
+    assert!(undo.starts_with("diffuse of mirror 0.3 → "), "{undo}");
+
+    desk.press("ctrl+z");
+    desk.until("undo gives back the same picture", |desk| {
+        desk.server.shot().differences(&before, places[0], &[], 0).is_empty()
+    });
+}
+
+#[test]
+fn at_one_to_one_the_screen_shows_the_bytes_of_the_picture() {
+    let (desk, twin) = Desk::with_scene();
+    let shot = desk.server.shot();
+    let view = twin.rect(Role::Image, "picture");
+    let bytes = super::rendered(desk.folder.path(), "scene.toml");
+    let wanted: Vec<[u8; 3]> = bytes.as_chunks::<3>().0.to_vec();
+    let [left, top] = [view.center().x - 160.0, view.center().y - 90.0].map(|v| v.round() as usize);
+    let row = |y: usize| &shot.pixels[(top + y) * shot.size[0] + left..][..320];
+    for y in 0..180 {
+        assert!(row(y) == &wanted[y * 320..][..320], "row {y} of the picture");
+    }
+}

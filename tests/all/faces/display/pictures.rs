@@ -1,0 +1,66 @@
+//! Pictures of the window for the eye, in two sizes, zooms and themes.
+
+use std::time::{Duration, Instant};
+
+use eframe::egui::{Pos2, pos2};
+
+use super::Desk;
+
+/// Waits until the screen has been the same for a while.
+fn until_still(desk: &Desk) {
+    let (mut last, mut since) = (desk.server.shot(), Instant::now());
+    while since.elapsed() < Duration::from_millis(1500) {
+        std::thread::sleep(Duration::from_millis(100));
+        let shot = desk.server.shot();
+        if shot != last {
+            (last, since) = (shot, Instant::now());
+        }
+    }
+}
+
+/// Shows one window after the other: the scene, a material, a light, and questions.
+fn take_pictures(size: [u16; 2], zoom_percent: u32, theme: &str) {
+    let mut desk = Desk::new(size);
+    let scene =
+        include_str!("../../../../scenes/whitted.toml").replace("[1280, 720]", "[640, 360]");
+    std::fs::write(desk.file("scene.toml"), scene).unwrap();
+    let settings = desk.file("config/rayforest");
+    std::fs::create_dir_all(&settings).unwrap();
+    let text = format!("theme = \"{theme}\"\nzoom_percent = {zoom_percent}\n");
+    std::fs::write(settings.join("settings.toml"), text).unwrap();
+    desk.start();
+    let take = |name: &str, desk: &Desk| {
+        until_still(desk);
+        let [width, height] = size;
+        let shot = desk.server.shot();
+        shot.keep(&format!("window-{width}x{height}-{zoom_percent}-{theme}-{name}"));
+    };
+    let at = |p: Pos2| (p.to_vec2() * (zoom_percent as f32 / 100.0)).to_pos2();
+    let rest = pos2(f32::from(size[0]) * 0.07, f32::from(size[1]) * 0.8);
+    take("scene", &desk);
+    for (name, row) in [("material", 120.0), ("light", 195.0), ("solid", 245.0)] {
+        desk.click(at(pos2(58.0, row)));
+        desk.point(rest);
+        take(name, &desk);
+    }
+    desk.click(at(pos2(20.0, 14.0)));
+    take("menu", &desk);
+    desk.press("Escape");
+    desk.press("ctrl+e");
+    take("export", &desk);
+    desk.press("Escape");
+    desk.press("ctrl+shift+s");
+    take("path", &desk);
+}
+
+#[test]
+#[ignore = "makes pictures for the eye in target/test-pictures"]
+fn the_window_in_all_sizes_zooms_and_themes() {
+    for size in [[1280, 720], [1920, 1080]] {
+        for zoom_percent in [100, 125] {
+            for theme in ["light", "dark"] {
+                take_pictures(size, zoom_percent, theme);
+            }
+        }
+    }
+}
