@@ -7,13 +7,18 @@ use super::server::Shot;
 use super::twin::Twin;
 use super::{Desk, REST, SIZE, status_line};
 
-/// A slider of the twin: its row across the inspector, its handle, and a place further right.
-fn slider(twin: &Twin, name: &str) -> (Rect, Pos2, Pos2) {
+/// The middle of the handle of a slider from 0 to 1 when it stands at a value.
+pub(super) fn handle(twin: &Twin, name: &str, value: f64) -> Pos2 {
     let rect = twin.rect(Role::Slider, name);
+    let path = rect.shrink(rect.height() / 2.5);
+    Pos2::new(path.left() + path.width() * value as f32, rect.center().y)
+}
+
+/// The row of a slider across the inspector.
+fn row(twin: &Twin, name: &str) -> Rect {
     let inspector = twin.rect(Role::Image, "picture").right();
-    let row = Rect::from_x_y_ranges(inspector..=f32::from(SIZE[0]), rect.y_range());
-    let along = |share: f32| Pos2::new(rect.left() + rect.width() * share, rect.center().y);
-    (row, rect.center(), along(0.8))
+    let rows = twin.rect(Role::Slider, name).y_range();
+    Rect::from_x_y_ranges(inspector..=f32::from(SIZE[0]), rows)
 }
 
 /// Selects the mirror and drags its diffuse slider, on the desk and on its twin. Gives the screens
@@ -30,8 +35,8 @@ pub(super) fn drag_diffuse(desk: &mut Desk, twin: &mut Twin) -> (Shot, Shot, Vec
     let before = desk.server.shot();
     let mut places = vec![twin.rect(Role::Image, "picture"), status_line()];
     places.extend([twin.place("Undo"), twin.place("scene.toml")]);
-    let (row, from, to) = slider(twin, "diffuse");
-    places.push(row);
+    places.push(row(twin, "diffuse"));
+    let (from, to) = (handle(twin, "diffuse", 0.3), handle(twin, "diffuse", 0.8));
     twin.drag(from, to);
     twin.until_exact();
     twin.hover(REST);
