@@ -21,6 +21,11 @@ fn row(twin: &Twin, name: &str) -> Rect {
     Rect::from_x_y_ranges(inspector..=f32::from(SIZE[0]), rows)
 }
 
+/// The document's name at the edge of the menu bar. A letter may stand out by part of a pixel.
+fn title(twin: &Twin, text: &str) -> Rect {
+    twin.place(text).expand(1.0)
+}
+
 /// Selects the mirror and drags its diffuse slider, on the desk and on its twin. Gives the screens
 /// before and after, and all places where they may differ.
 pub(super) fn drag_diffuse(desk: &mut Desk, twin: &mut Twin) -> (Shot, Shot, Vec<Rect>) {
@@ -34,13 +39,13 @@ pub(super) fn drag_diffuse(desk: &mut Desk, twin: &mut Twin) -> (Shot, Shot, Vec
     desk.until_like(twin, "the material is shown");
     let before = desk.server.shot();
     let mut places = vec![twin.rect(Role::Image, "picture"), status_line()];
-    places.extend([twin.place("Undo"), twin.place("scene.toml")]);
+    places.extend([twin.place("Undo"), title(twin, "scene.toml")]);
     places.push(row(twin, "diffuse"));
     let (from, to) = (handle(twin, "diffuse", 0.3), handle(twin, "diffuse", 0.8));
     twin.drag(from, to);
     twin.until_exact();
     twin.hover(REST);
-    places.push(twin.place("scene.toml •"));
+    places.push(title(twin, "scene.toml •"));
     desk.drag(from, to);
     desk.until_like(twin, "the picture shows the edit");
     (before, desk.server.shot(), places)
@@ -60,7 +65,7 @@ fn a_dragged_slider_changes_the_picture_its_row_the_status_and_the_marks_alone()
         assert!(!changed.is_empty(), "nothing changed in {place:?}");
     }
     let undo = twin.app().document().undo_name().expect("a step").to_owned();
-    assert!(undo.starts_with("diffuse of mirror 0.3 → "), "{undo}");
+    assert!(undo.starts_with("diffuse of mirror 0.30 → "), "{undo}");
 
     desk.press("ctrl+z");
     desk.until("undo gives back the same picture", |desk| {
