@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::render::edit_line;
 use super::watch::watched;
-use super::{Failure, print, read_scene};
+use super::{Failure, print, read_scene, say};
 use crate::document::BUILT_IN;
 use crate::film::write::{Format, check_writable, picture};
 use crate::scene::path::set;
@@ -12,14 +12,16 @@ use crate::scene::{Scene, read, write};
 use crate::session::{Options, Session};
 
 /// Where the first picture goes: into the present folder.
-pub(super) const PICTURE: &str = "rayforest.png";
+const PICTURE: &str = "rayforest.png";
 
-pub(crate) fn run(file: Option<&Path>) -> Result<(), Failure> {
+/// Renders a scene file, or the built-in scene; `why` there is no window.
+pub(crate) fn run(file: Option<&Path>, why: &str) -> Result<(), Failure> {
     let scene = match file {
         Some(file) => read_scene(file)?,
         None => read::text(BUILT_IN.1, Path::new("whitted.toml")).map_err(Failure::input)?,
     };
     check_writable(Path::new(PICTURE)).map_err(Failure::job)?;
+    say(&format!("{why}: rendering to {PICTURE} instead"));
     let opened = watched("tracing", |p| Session::open(scene, Options::default(), p));
     let mut session = opened.map_err(Failure::job)?;
     let report = session.trace_report();

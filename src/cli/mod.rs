@@ -126,10 +126,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
 fn window(scene: Option<PathBuf>) -> Result<(), Failure> {
     match crate::viewer::run(scene.clone(), Options::default()) {
         Ok(()) => Ok(()),
-        Err(error @ WindowError::NoDisplay(_)) => {
-            say(&format!("{error}: rendering to {} instead", demo::PICTURE));
-            demo::run(scene.as_deref())
-        }
+        Err(error @ WindowError::NoDisplay(_)) => demo::run(scene.as_deref(), &error.to_string()),
         Err(error @ WindowError::NoGraphics(_)) => Err(Failure::job(error)),
     }
 }

@@ -34,17 +34,32 @@ pub enum Cost {
 /// parameter (and falls with the cut-off), so the greatest value is sought at which no term of the
 /// frontier lives.
 pub fn cost(session: &Session, path: &str) -> Option<Cost> {
-    let scene = session.scene();
-    let altered = path::altered(scene, path)?;
-    let change = Change::between(scene, &altered);
+    let altered = path::altered(session.scene(), path)?;
+    Some(match Knob::between(session.scene(), &altered) {
+        Some(knob) => knob.cost(session),
+        None => cost_of(session, &altered),
+    })
+}
+
+/// The same while the scene is still traced and `session` holds a preview of it: `None` also where
+/// only the whole picture's frontier can tell.
+pub fn cost_of_preview(session: &Session, path: &str) -> Option<Cost> {
+    let altered = path::altered(session.scene(), path)?;
+    let knob = Knob::between(session.scene(), &altered);
+    knob.is_none().then(|| cost_of(session, &altered))
+}
+
+/// The cost of an edit that brings no branch to life.
+fn cost_of(session: &Session, altered: &Scene) -> Cost {
+    let change = Change::between(session.scene(), altered);
     let released = || session.transport.tiles.iter().any(|tile| tile.highlights.is_none());
-    Some(if change.moves_rays.is_some() {
+    if change.moves_rays.is_some() {
         Cost::TraceAll
     } else if !change.refold.is_empty() {
         if released() { Cost::TraceAll } else { Cost::Refold }
     } else {
-        Knob::between(scene, &altered).map_or(Cost::Instant, |knob| knob.cost(session))
-    })
+        Cost::Instant
+    }
 }
 
 /// A parameter that the rule of liveness reads.

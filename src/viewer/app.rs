@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use eframe::egui::{CentralPanel, Context, Frame, Margin, Panel, Ui, Vec2, ViewportCommand};
+use eframe::egui::{CentralPanel, Context, Frame, Margin, Panel, Popup, Ui, Vec2, ViewportCommand};
 
 use super::Setup;
 use super::command::Command;
@@ -149,9 +149,15 @@ impl App {
         if self.files.is_modal() {
             return Vec::new();
         }
-        let typing = ctx.egui_wants_keyboard_input();
+        let focused = ctx.egui_wants_keyboard_input();
         let plain = |c: &Command| c.shortcut().is_some_and(|s| s.modifiers.is_none());
-        let usable = Command::WITH_SHORTCUTS.into_iter().filter(|c| !(typing && plain(c)));
+        // A text field has an undo of its own.
+        let typing = ctx.text_edit_focused();
+        // Escape closes an open menu first.
+        let open = Popup::is_any_open(ctx);
+        let own = |c: &Command| typing && matches!(c, Command::Undo | Command::Redo);
+        let taken = |c: &Command| ((focused || open) && plain(c)) || own(c);
+        let usable = Command::WITH_SHORTCUTS.into_iter().filter(|c| !taken(c));
         usable
             .filter(|command| {
                 let shortcut = command.shortcut();

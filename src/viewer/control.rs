@@ -63,7 +63,10 @@ pub(super) fn control_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> Row
             ui.set_min_width(width);
             outcome.changed |= value_ui(ui, row, slot);
         });
-        badge_ui(ui, row.key, row.cost, ui.available_width().min(BADGE));
+        // The name of a mesh file is not edited here.
+        if !matches!(slot, Slot::Mesh { .. }) {
+            badge_ui(ui, row.key, row.cost, ui.available_width().min(BADGE));
+        }
     });
     if let Slot::Coefficient(color, range) = slot
         && shows_channels(ui, row, color)
@@ -182,6 +185,7 @@ fn field_ui(ui: &mut Ui, row: &Row<'_>, name: &str, x: &mut f64, range: Range) -
     let field = DragValue::new(x)
         .speed(speed)
         .update_while_editing(false)
+        .custom_parser(typed)
         .custom_formatter(|x, _| shown(x));
     let response = ui.add_sized(vec2(FIELD, ui.spacing().interact_size.y), field);
     // A field that is left without an edit keeps every bit, also those that it does not show.
@@ -206,6 +210,7 @@ fn pair_ui(ui: &mut Ui, row: &Row<'_>, pair: &mut [u32; 2], range: Range) -> boo
     for (n, part) in pair.iter_mut().zip(names) {
         let field = DragValue::new(n)
             .range(range.low as u32..=range.high as u32)
+            .custom_parser(typed)
             .update_while_editing(false);
         let response = ui.add(field).accessible_name(format!("{} {part}", row.key));
         changed |= explained(response, row, Some(range)).changed();
@@ -238,7 +243,7 @@ fn coefficient_ui(ui: &mut Ui, row: &Row<'_>, color: &mut Rgb, range: Range) -> 
         }
         return false;
     }
-    let id = channels_id(ui, row);
+    let id = channels_id(row);
     let mut open = ui.data(|data| data.get_temp::<bool>(id)).unwrap_or(false);
     let mut wide = f64::from(r);
     let changed = number_ui(ui, row, row.key, &mut wide, range);
@@ -255,14 +260,15 @@ fn coefficient_ui(ui: &mut Ui, row: &Row<'_>, color: &mut Rgb, range: Range) -> 
     changed
 }
 
-fn channels_id(ui: &Ui, row: &Row<'_>) -> Id {
-    ui.make_persistent_id(("channels", row.path))
+/// The same wherever in the row it is asked for.
+fn channels_id(row: &Row<'_>) -> Id {
+    Id::unique(("channels", row.path))
 }
 
 /// Whether the three channels have rows of their own.
 fn shows_channels(ui: &Ui, row: &Row<'_>, color: &Rgb) -> bool {
     let Rgb([r, g, b]) = *color;
-    let opened = ui.data(|data| data.get_temp::<bool>(channels_id(ui, row)));
+    let opened = ui.data(|data| data.get_temp::<bool>(channels_id(row)));
     !hints::is_color(row.key) && (r != g || g != b || opened.unwrap_or(false))
 }
 
@@ -304,6 +310,7 @@ fn color_ui(ui: &mut Ui, row: &Row<'_>, color: &mut Rgb, range: Range) -> bool {
         let field = DragValue::new(&mut wide)
             .speed(0.003)
             .update_while_editing(false)
+            .custom_parser(typed)
             .custom_formatter(|x, _| shown(x));
         let response = ui.add_sized(vec2(width, ui.spacing().interact_size.y), field);
         let edited = response.changed() && shown(wide) != shown(f64::from(*channel));
@@ -323,7 +330,7 @@ fn material_ui(ui: &mut Ui, row: &Row<'_>, index: &mut usize) -> bool {
     let combo = ComboBox::from_id_salt(row.path).selected_text(name(before));
     let response = combo.width(ui.available_width()).show_ui(ui, |ui| {
         for i in 0..names.len() {
-            ui.selectable_value(index, i, name(i));
+            ui.selectable_value(index, i, name(i)).on_hover_text("Gives the solid this material");
         }
     });
     explained(response.response.accessible_name(row.key), row, None);
@@ -335,6 +342,7 @@ fn points_ui(ui: &mut Ui, row: &Row<'_>, points: &mut [DVec3], outcome: &mut Row
     let title = format!("{} ({})", row.key, points.len());
     let header = CollapsingHeader::new(title).id_salt(row.path);
     let header = header.show(ui, |ui| {
+        badge_ui(ui, row.key, row.cost, BADGE);
         for (i, point) in points.iter_mut().enumerate() {
             ui.horizontal(|ui| {
                 let name = format!("{} {i}", row.key);
@@ -361,6 +369,12 @@ fn explained(response: Response, row: &Row<'_>, range: Option<Range>) -> Respons
     })
 }
 
+/// What a typed text means, if it is a number: spaces do not count, a printed minus does.
+pub(super) fn typed(text: &str) -> Option<f64> {
+    let text: String = text.chars().filter(|c| !c.is_whitespace()).collect();
+    text.replace('−', "-").parse().ok().filter(|x: &f64| !x.is_nan())
+}
+
 /// Five significant digits at most.
 fn shown(x: f64) -> String {
     if x == 0.0 {
@@ -380,6 +394,15 @@ fn shown(x: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn only_numbers_are_taken_for_numbers() {
+        for (text, x) in
+            [("0.5", Some(0.5)), (" −1 000 ", Some(-1000.0)), ("NaN", None), ("1,5", None)]
+        {
+            assert_eq!(typed(text), x, "{text}");
+        }
+    }
 
     #[test]
     fn numbers_are_shown_with_five_digits() {

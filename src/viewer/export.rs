@@ -4,6 +4,7 @@ use std::path::Path;
 
 use eframe::egui::{DragValue, Ui};
 
+use super::control::typed;
 use crate::film::write::Format;
 use crate::scene::MAX_SIDE;
 
@@ -60,7 +61,8 @@ impl ExportForm {
         ui.horizontal(|ui| {
             ui.label("Size");
             for (side, name) in self.size.iter_mut().zip(["width", "height"]) {
-                let field = DragValue::new(side).range(1..=MAX_SIDE).update_while_editing(false);
+                let field = DragValue::new(side).range(1..=MAX_SIDE).custom_parser(typed);
+                let field = field.update_while_editing(false);
                 let response = ui.add(field).accessible_name(format!("export {name}"));
                 response.on_hover_text("In pixels");
             }

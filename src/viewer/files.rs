@@ -76,6 +76,10 @@ pub(super) struct Files {
     /// What the dialog that shows is for.
     asking: Option<(Question, For)>,
     pub(super) modal: Option<Modal>,
+    /// Work of runs that ended without saving it, until it is offered.
+    pub(super) found: Vec<Found>,
+    /// Work that was opened, until it is kept anew or no longer unsaved.
+    recovered: Option<Found>,
     send: Sender<Done>,
     receive: Receiver<Done>,
     /// The latest edit that is not kept yet.
@@ -92,6 +96,8 @@ impl Files {
             dialogs,
             asking: None,
             modal: None,
+            found: Vec::new(),
+            recovered: None,
             send,
             receive,
             touched: None,
@@ -99,16 +105,36 @@ impl Files {
         }
     }
 
-    /// Offers what was found, if anything was.
+    /// Offers what was found, if anything was, once no other question waits.
     pub(super) fn offer_recovery(&mut self, found: Vec<Found>) {
-        if !found.is_empty() {
-            self.modal = Some(Modal::Recover(found));
+        self.found = found;
+    }
+
+    /// Asks a question. Found work that is being offered waits until it is answered.
+    fn show(&mut self, modal: Modal) {
+        if let Some(Modal::Recover(found)) = self.modal.replace(modal) {
+            self.found = found;
+        }
+    }
+
+    /// Takes the question that waits.
+    pub(super) fn take_modal(&mut self) -> Option<Modal> {
+        self.modal.take().or_else(|| {
+            let found = std::mem::take(&mut self.found);
+            (!found.is_empty()).then_some(Modal::Recover(found))
+        })
+    }
+
+    /// What was recovered is safe elsewhere, or given up: its old file goes.
+    fn discard_recovered(&mut self) {
+        if let Some(found) = self.recovered.take() {
+            found.discard();
         }
     }
 
     /// Whether keys belong to a question and not to the window.
     pub(super) fn is_modal(&self) -> bool {
-        self.modal.is_some() || self.asking.is_some()
+        self.modal.is_some() || self.asking.is_some() || !self.found.is_empty()
     }
 
     /// The document was edited.
@@ -149,7 +175,7 @@ impl App {
             Command::SaveAs => self.ask_save(ctx, None),
             Command::Export => {
                 let form = ExportForm::new(self.document.scene().picture.size);
-                self.files.modal = Some(Modal::Export(form));
+                self.files.show(Modal::Export(form));
             }
             _ => {}
         }
@@ -159,7 +185,7 @@ impl App {
     fn after_unsaved(&mut self, ctx: &Context, next: Next) {
         self.document.end_gesture();
         if self.document.is_unsaved() {
-            self.files.modal = Some(Modal::Unsaved(next));
+            self.files.show(Modal::Unsaved(next));
         } else {
             self.go_on(ctx, next);
         }
@@ -267,7 +293,7 @@ impl App {
         let close = ctx.input(|i| i.viewport().close_requested());
         if close && !self.files.leaving && self.document.is_unsaved() {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
-            self.files.modal = Some(Modal::Unsaved(Next::Quit));
+            self.files.show(Modal::Unsaved(Next::Quit));
         }
     }
 
@@ -282,7 +308,7 @@ impl App {
             Answer::File(file) => self.chosen(ctx, file, what),
             Answer::Cancelled => {}
             Answer::NoService => {
-                self.files.modal = Some(Modal::Path(PathField::new(question, ctx), what));
+                self.files.show(Modal::Path(PathField::new(question, ctx), what));
             }
         }
     }
@@ -298,7 +324,7 @@ impl App {
                     if self.shown.is_none() {
                         self.show_scene();
                     }
-                    self.files.modal = Some(Modal::BadScene { path, message, missing });
+                    self.files.show(Modal::BadScene { path, message, missing });
                 }
             },
             Done::Saved { save, result: Ok(()), next } => {
@@ -309,14 +335,15 @@ impl App {
                 // Another folder may have changed the paths of meshes, and nothing is unsaved now.
                 self.show_scene();
                 if let Some(next) = next {
-                    self.go_on(ctx, next);
+                    // There may be edits since.
+                    self.after_unsaved(ctx, next);
                 }
             }
             Done::Saved { save, result: Err(error), next } if error.changed_on_disk => {
-                self.files.modal = Some(Modal::Changed { save, message: error.message, next });
+                self.files.show(Modal::Changed { save, message: error.message, next });
             }
             Done::Saved { result: Err(error), .. } => self.notices.error(error.message),
-            Done::Kept(Ok(())) => {}
+            Done::Kept(Ok(())) => self.files.discard_recovered(),
             Done::Kept(Err(error)) => {
                 self.notices.error(format!("unsaved work is not kept: {}", error.message));
             }
@@ -348,6 +375,7 @@ impl App {
             self.files.work(ctx, move || Done::Kept(snapshot.write()));
         } else {
             recovery.clear();
+            self.files.discard_recovered();
         }
     }
 
@@ -356,12 +384,16 @@ impl App {
         if let Some(recovery) = &self.recovery {
             recovery.clear();
         }
+        self.files.discard_recovered();
     }
 
     /// Opens recovered work.
-    pub(super) fn recover(&mut self, found: &Found) {
+    pub(super) fn recover(&mut self, found: Found) {
         match found.open() {
-            Ok(document) => self.replace_document(document),
+            Ok(document) => {
+                self.replace_document(document);
+                self.files.recovered = Some(found);
+            }
             Err(error) => self.notices.error(error.message),
         }
     }

@@ -151,7 +151,7 @@ fn labelled_item(ui: &mut Ui, command: Command, name: &str, chosen: &mut Option<
     if let Some(shortcut) = command.shortcut() {
         button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
     }
-    let response = ui.add(button);
+    let response = ui.add(button).on_disabled_hover_text(command.about());
     if response.on_hover_text(command.about()).clicked() {
         *chosen = Some(command);
         ui.close();

@@ -27,7 +27,7 @@ enum Overwrite {
 impl App {
     /// Shows the question that waits, if any, and does what was answered.
     pub(super) fn modals(&mut self, ctx: &Context) {
-        let Some(modal) = self.files.modal.take() else { return };
+        let Some(modal) = self.files.take_modal() else { return };
         let shown = EguiModal::new(Id::unique("question")).show(ctx, |ui| match modal {
             Modal::Unsaved(next) => self.unsaved_ui(ui, next),
             Modal::Export(mut form) => match form.ui(ui) {
@@ -155,7 +155,8 @@ impl App {
         let later = ui.button("Later").on_hover_text("Keeps it; asks again at the next start");
         if let Some(i) = opened {
             let item = found.remove(i);
-            self.recover(&item);
+            self.recover(item);
+            // The rest is found again at the next start.
             return None;
         }
         if let Some(i) = discarded {

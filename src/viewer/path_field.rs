@@ -107,6 +107,8 @@ impl PathField {
             let about = "Takes the file of this path";
             if ui.button(verb).on_hover_text(about).clicked() || entered {
                 choice = self.decide();
+                // Enter again answers what is asked once more.
+                self.focused = choice.is_some() || !entered;
             }
             if ui.button("Cancel").on_hover_text("Leaves everything as it is").clicked() {
                 choice = Some(Choice::Cancelled);

@@ -1,14 +1,15 @@
 //! Colours, spacing and text sizes of the window.
 
 use eframe::egui::{
-    Color32, Context, FontFamily, FontId, Style, TextStyle, Theme as EguiTheme, ThemePreference,
-    Visuals, vec2,
+    Color32, Context, FontDefinitions, FontFamily, FontId, Style, TextStyle, Theme as EguiTheme,
+    ThemePreference, Visuals, vec2,
 };
 
 use crate::document::settings::{Settings, Theme};
 
 /// Gives the window its look; once, at the start.
 pub(super) fn set_up(ctx: &Context) {
+    ctx.set_fonts(fonts());
     for theme in [EguiTheme::Dark, EguiTheme::Light] {
         ctx.style_mut_of(theme, |style| {
             spacing(style);
@@ -25,6 +26,13 @@ pub(super) fn apply(ctx: &Context, settings: &Settings) {
         Theme::Dark => ThemePreference::Dark,
     });
     ctx.set_zoom_factor(settings.zoom_percent.clamp(50, 300) as f32 / 100.0);
+}
+
+/// The arrows in the names of steps stand in the monospaced font alone.
+fn fonts() -> FontDefinitions {
+    let mut fonts = FontDefinitions::default();
+    fonts.families.entry(FontFamily::Proportional).or_default().push("Hack".into());
+    fonts
 }
 
 fn spacing(style: &mut Style) {

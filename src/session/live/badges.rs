@@ -3,23 +3,26 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
 
+use super::Stage;
 use super::board::Board;
 use crate::session::Session;
-use crate::session::cost::{Cost, cost};
+use crate::session::cost::{Cost, cost, cost_of_preview};
 
 /// How long edits must have rested.
 const REST: Duration = Duration::from_millis(100);
 /// How often costs are shown while more are computed.
 const SHOW: Duration = Duration::from_millis(50);
 
-/// What is known of the whole picture's scene, and what is still to be asked.
+/// What is known of the scene shown, and what is still to be asked.
 #[derive(Default)]
 pub(super) struct Badges {
     watched: Vec<String>,
     known: BTreeMap<String, Cost>,
     open: VecDeque<String>,
-    /// When to begin, if the picture is whole.
+    /// When to begin, if there is a picture.
     due: Option<Instant>,
+    /// Whether the picture shown is whole.
+    whole: bool,
     shown: Option<Instant>,
 }
 
@@ -32,17 +35,14 @@ impl Badges {
         }
     }
 
-    /// The whole picture shows another scene now.
-    pub(super) fn renew(&mut self) {
+    /// The picture shows another scene now, or the same one at another stage.
+    pub(super) fn renew(&mut self, stage: Stage, board: &Board) {
         self.known.clear();
         self.open = self.watched.iter().cloned().collect();
         self.due = Some(Instant::now() + REST);
-    }
-
-    /// The picture shown is not whole: its costs are not known.
-    pub(super) fn withdraw(&mut self, board: &Board) {
-        if self.due.take().is_some() {
-            self.known.clear();
+        // What was said of a whole picture does not hold for one that is being traced.
+        let was_whole = std::mem::replace(&mut self.whole, stage == Stage::Whole);
+        if was_whole && !self.whole {
             board.price(BTreeMap::new());
         }
     }
@@ -59,7 +59,10 @@ impl Badges {
             return;
         }
         if let Some(path) = self.open.pop_front()
-            && let Some(cost) = cost(session, &path)
+            && let Some(cost) = match self.whole {
+                true => cost(session, &path),
+                false => cost_of_preview(session, &path),
+            }
         {
             self.known.insert(path, cost);
         }

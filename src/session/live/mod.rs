@@ -177,8 +177,8 @@ impl Live {
         self.order(Message::Watch(paths));
     }
 
-    /// The newest known costs of the watched parameters, of the scene shown; empty while it is
-    /// traced, because only a whole picture knows them.
+    /// The newest known costs of the watched parameters, of the scene shown. While it is traced those
+    /// are missing that only the frontier of the whole picture knows.
     pub fn costs(&self) -> Arc<BTreeMap<String, Cost>> {
         self.board.costs()
     }

@@ -209,8 +209,10 @@ impl Shader {
         if !idle {
             self.report();
             self.board.wake();
-        } else if let Some(whole) = self.whole.as_ref().filter(|_| self.preview.is_none()) {
-            self.badges.work(whole, &self.board);
+        } else if let Some(shown) =
+            self.preview.as_ref().map(|p| &p.session).or(self.whole.as_ref())
+        {
+            self.badges.work(shown, &self.board);
         }
         self.tell_progress();
     }
@@ -497,10 +499,7 @@ impl Shader {
         };
         let shown = Shown { frame: session.shared_frame(), scene, stage };
         self.board.show(shown, session.shared_geometry());
-        match stage {
-            Stage::Whole => self.badges.renew(),
-            _ => self.badges.withdraw(&self.board),
-        }
+        self.badges.renew(stage, &self.board);
         self.report();
         self.board.wake();
     }

@@ -201,9 +201,7 @@ impl Desk {
 
     /// Waits until the screen differs from `before` within `part`.
     fn until_changed(&mut self, before: &Shot, part: Rect, what: &str) {
-        self.until(what, |desk| {
-            !desk.server.shot().differences(before, part, &[], 0).is_empty()
-        });
+        self.until(what, |desk| !desk.server.shot().differences(before, part, &[], 0).is_empty());
     }
 
     fn point(&self, at: Pos2) {

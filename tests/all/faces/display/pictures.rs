@@ -21,7 +21,8 @@ fn until_still(desk: &Desk) {
 /// Shows one window after the other: the scene, a material, a light, and questions.
 fn take_pictures(size: [u16; 2], zoom_percent: u32, theme: &str) {
     let mut desk = Desk::new(size);
-    let scene = include_str!("../../../../scenes/whitted.toml").replace("[1280, 720]", "[640, 360]");
+    let scene =
+        include_str!("../../../../scenes/whitted.toml").replace("[1280, 720]", "[640, 360]");
     std::fs::write(desk.file("scene.toml"), scene).unwrap();
     let settings = desk.file("config/rayforest");
     std::fs::create_dir_all(&settings).unwrap();

@@ -1,14 +1,25 @@
 //! The window without a display, driven by the accessible names of its widgets.
 
+mod camera;
+mod costs;
 mod edits;
+mod export;
+mod files;
+mod keyboard;
+mod names;
+mod paths;
+mod picture;
+mod questions;
+mod recovery;
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use eframe::egui::accessibility::is_input;
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Pos2, Rect, vec2};
+use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Vec2, vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use rayforest::session::Options;
 use rayforest::viewer::dialog::{Answer, ScriptedDialogs};
 use rayforest::viewer::{App, Folders, Setup};
@@ -41,12 +52,19 @@ impl Window {
         scene: Option<PathBuf>,
         answers: Vec<Answer>,
     ) -> Window {
+        Window::of_size(vec2(1280.0, 720.0), folder, scene, answers)
+    }
+
+    fn of_size(
+        size: Vec2,
+        folder: tempfile::TempDir,
+        scene: Option<PathBuf>,
+        answers: Vec<Answer>,
+    ) -> Window {
         let root = folder.path().to_owned();
         let options = Options { threads: 2, memory: 1 << 30 };
-        let harness = Harness::builder()
-            .with_size(vec2(1280.0, 720.0))
-            .with_max_steps(1000)
-            .build_eframe(|context| {
+        let harness =
+            Harness::builder().with_size(size).with_max_steps(1000).build_eframe(|context| {
                 let setup = Setup {
                     options,
                     folders: Folders {
@@ -95,8 +113,8 @@ impl Window {
     /// Turns until a label holds a text.
     fn until_text(&mut self, text: &str) {
         let start = Instant::now();
-        while self.harness.query_by_label_contains(text).is_none() {
-            assert!(start.elapsed() < PATIENCE, "there is no label with `{text}`");
+        while !self.shows(text) {
+            assert!(start.elapsed() < PATIENCE, "no label with `{text}` in {:#?}", self.texts());
             self.harness.step();
             std::thread::sleep(Duration::from_millis(3));
         }
@@ -107,9 +125,102 @@ impl Window {
         self.app().shown().expect("a picture is shown").frame.bytes.clone()
     }
 
+    /// Presses the one button of this name; a shortcut may stand behind the name.
     fn click(&mut self, name: &str) {
-        self.harness.get_by_label(name).click();
+        let at = self.button(name).unwrap_or_else(|| panic!("no button `{name}`"));
+        self.click_at(at, Modifiers::NONE);
+    }
+
+    /// Where the one button, or line of a list, of this name is.
+    fn button(&self, name: &str) -> Option<Pos2> {
+        let long = format!("{name} ");
+        let typed = [Role::Slider, Role::SpinButton, Role::TextInput];
+        let named = |node: &egui_kittest::Node<'_>, whole: bool| {
+            let node = node.accesskit_node();
+            let label = node.label().unwrap_or_default();
+            let same = if whole { label == name } else { label.starts_with(&long) };
+            is_input(node.role()) && !typed.contains(&node.role()) && !node.is_hidden() && same
+        };
+        let all = |whole| self.harness.root().children_recursive().filter(move |n| named(n, whole));
+        let found: Vec<_> = all(true).collect();
+        let found = if found.is_empty() { all(false).collect() } else { found };
+        assert!(found.len() < 2, "{} buttons `{name}`", found.len());
+        Some(found.first()?.rect().center())
+    }
+
+    /// One button after another: a menu, and what it opens.
+    fn menu(&mut self, path: &[&str]) {
+        for name in path {
+            self.click(name);
+        }
+    }
+
+    fn click_at(&mut self, at: Pos2, modifiers: Modifiers) {
+        self.harness.event(Event::PointerMoved(at));
+        self.harness.event(Event::ModifiersChanged(modifiers));
+        for pressed in [true, false] {
+            let button = PointerButton::Primary;
+            self.harness.event(Event::PointerButton { pos: at, button, pressed, modifiers });
+        }
+        self.harness.event(Event::ModifiersChanged(Modifiers::NONE));
+        self.harness.step();
         self.harness.run_steps(3);
+    }
+
+    /// Clicks twice within one turn.
+    fn double_click_at(&mut self, at: Pos2) {
+        self.harness.event(Event::PointerMoved(at));
+        self.harness.step();
+        let events = &mut self.harness.input_mut().events;
+        for pressed in [true, false, true, false] {
+            let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+            events.push(Event::PointerButton { pos: at, button, pressed, modifiers });
+        }
+        self.harness.run_steps(3);
+    }
+
+    fn key(&mut self, modifiers: Modifiers, key: Key) {
+        self.harness.key_press_modifiers(modifiers, key);
+        self.harness.step();
+        self.harness.run_steps(2);
+    }
+
+    fn write(&mut self, text: &str) {
+        self.harness.event(Event::Text(text.to_owned()));
+        self.harness.step();
+    }
+
+    /// Clicks a number field, types, and presses Enter.
+    fn type_into(&mut self, name: &str, text: &str) {
+        let at = self.rect(Role::SpinButton, name).center();
+        self.click_at(at, Modifiers::NONE);
+        self.write(text);
+        self.key(Modifiers::NONE, Key::Enter);
+    }
+
+    /// Saves, and waits until nothing is unsaved.
+    fn save(&mut self) {
+        self.key(Modifiers::COMMAND, Key::S);
+        self.until("the scene is saved", |app| !app.document().is_unsaved());
+        self.harness.run_steps(2);
+    }
+
+    /// Names and texts of all that shows.
+    fn texts(&self) -> Vec<String> {
+        let text = |node: egui_kittest::Node<'_>| {
+            let node = node.accesskit_node();
+            let is_label = node.role() == Role::Label;
+            if is_label { node.value() } else { node.label() }
+        };
+        self.harness.root().children_recursive().filter_map(text).collect()
+    }
+
+    fn shows(&self, text: &str) -> bool {
+        self.texts().iter().any(|shown| shown.contains(text))
+    }
+
+    fn undo_name(&self) -> Option<&str> {
+        self.app().document().undo_name()
     }
 
     fn rect(&self, role: Role, name: &str) -> Rect {
@@ -139,6 +250,12 @@ impl Window {
     fn scene_text(&self) -> String {
         std::fs::read_to_string(self.file("scene.toml")).unwrap()
     }
+}
+
+/// What a picture file without alpha holds of the bytes of a frame.
+fn rgb(frame: &[u8]) -> Vec<u8> {
+    let (pixels, _) = frame.as_chunks::<4>();
+    pixels.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect()
 }
 
 /// The bytes that a fresh render of a scene file gives.
