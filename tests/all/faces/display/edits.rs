@@ -7,13 +7,23 @@ use super::server::Shot;
 use super::twin::Twin;
 use super::{Desk, REST, SIZE, status_line};
 
-/// A slider of the twin: its row across the inspector, its handle, and a place further right.
-fn slider(twin: &Twin, name: &str) -> (Rect, Pos2, Pos2) {
+/// The middle of the handle of a slider from 0 to 1 when it stands at a value.
+pub(super) fn handle(twin: &Twin, name: &str, value: f64) -> Pos2 {
     let rect = twin.rect(Role::Slider, name);
+    let path = rect.shrink(rect.height() / 2.5);
+    Pos2::new(path.left() + path.width() * value as f32, rect.center().y)
+}
+
+/// The row of a slider across the inspector.
+fn row(twin: &Twin, name: &str) -> Rect {
     let inspector = twin.rect(Role::Image, "picture").right();
-    let row = Rect::from_x_y_ranges(inspector..=f32::from(SIZE[0]), rect.y_range());
-    let along = |share: f32| Pos2::new(rect.left() + rect.width() * share, rect.center().y);
-    (row, rect.center(), along(0.8))
+    let rows = twin.rect(Role::Slider, name).y_range();
+    Rect::from_x_y_ranges(inspector..=f32::from(SIZE[0]), rows)
+}
+
+/// The document's name at the edge of the menu bar. A letter may stand out by part of a pixel.
+fn title(twin: &Twin, text: &str) -> Rect {
+    twin.place(text).expand(1.0)
 }
 
 /// Selects the mirror and drags its diffuse slider, on the desk and on its twin. Gives the screens
@@ -29,13 +39,13 @@ pub(super) fn drag_diffuse(desk: &mut Desk, twin: &mut Twin) -> (Shot, Shot, Vec
     desk.until_like(twin, "the material is shown");
     let before = desk.server.shot();
     let mut places = vec![twin.rect(Role::Image, "picture"), status_line()];
-    places.extend([twin.place("Undo"), twin.place("scene.toml")]);
-    let (row, from, to) = slider(twin, "diffuse");
-    places.push(row);
+    places.extend([twin.place("Undo"), title(twin, "scene.toml")]);
+    places.push(row(twin, "diffuse"));
+    let (from, to) = (handle(twin, "diffuse", 0.3), handle(twin, "diffuse", 0.8));
     twin.drag(from, to);
     twin.until_exact();
     twin.hover(REST);
-    places.push(twin.place("scene.toml •"));
+    places.push(title(twin, "scene.toml •"));
     desk.drag(from, to);
     desk.until_like(twin, "the picture shows the edit");
     (before, desk.server.shot(), places)
@@ -55,7 +65,7 @@ fn a_dragged_slider_changes_the_picture_its_row_the_status_and_the_marks_alone()
         assert!(!changed.is_empty(), "nothing changed in {place:?}");
     }
     let undo = twin.app().document().undo_name().expect("a step").to_owned();
-    assert!(undo.starts_with("diffuse of mirror 0.3 → "), "{undo}");
+    assert!(undo.starts_with("diffuse of mirror 0.30 → "), "{undo}");
 
     desk.press("ctrl+z");
     desk.until("undo gives back the same picture", |desk| {

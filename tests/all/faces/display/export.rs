@@ -1,7 +1,7 @@
 //! Exports where no dialog service answers: by the program's own path field.
 
-use eframe::egui::Key;
 use eframe::egui::accesskit::Role;
+use eframe::egui::{Key, vec2};
 
 use super::edits::drag_diffuse;
 use super::{Desk, rendered};
@@ -18,12 +18,13 @@ fn a_picture_is_exported_through_the_path_field() {
     let before = desk.server.shot();
     desk.press("ctrl+e");
     desk.until_changed(&before, button, "the export's question shows");
-    let before = desk.server.shot();
     desk.click(button.center());
     twin.click(button.center());
     let field = twin.rect(Role::TextInput, "file path");
-    desk.until_changed(&before, field, "the path field shows");
-    desk.press("ctrl+a");
+    let heading = twin.place("Export the picture");
+    desk.until_part_like(&mut twin, heading, "the path field shows");
+    let start = field.left_center() + vec2(20.0, 0.0);
+    desk.watched(start, "the path is selected", |desk| desk.press("ctrl+a"));
     desk.server.xdotool(&["type", &desk.file("typed.png").display().to_string()]);
     desk.press("Return");
     desk.until("the picture is written", |desk| desk.file("typed.png").exists());

@@ -3,11 +3,10 @@
 use std::path::Path;
 use std::time::Duration;
 
-use eframe::egui::Pos2;
 use eframe::egui::accesskit::Role;
 use serde_json::Value;
 
-use super::edits::drag_diffuse;
+use super::edits::{drag_diffuse, handle};
 use super::twin::Twin;
 use super::{COMMENTED, Desk};
 use crate::exact::random::Random;
@@ -78,10 +77,8 @@ fn killed_at_any_moment_the_kept_work_is_whole() {
     let mut random = Random(11);
     for round in 0..3 {
         let before = diffuse(desk.kept_work()[0]["scene"].as_str().expect("a text"));
-        let rect = twin.rect(Role::Slider, "diffuse");
-        let along = |share: f32| Pos2::new(rect.left() + rect.width() * share, rect.center().y);
-        let share = 0.2 + 0.1 * round as f32;
-        desk.drag(along(handle(before)), along(share));
+        let to = handle(&twin, "diffuse", 0.2 + 0.1 * f64::from(round));
+        desk.drag(handle(&twin, "diffuse", before), to);
         // work is kept a second after the edit, which is when this ends
         std::thread::sleep(Duration::from_millis(900 + (random.unit() * 200.0) as u64));
         desk.kill();
@@ -98,9 +95,4 @@ fn killed_at_any_moment_the_kept_work_is_whole() {
         desk.until_like(&mut twin, "the material is shown");
     }
     assert_eq!(desk.scene_text(), COMMENTED);
-}
-
-/// Where a slider's handle stands, as a share of its length.
-fn handle(value: f64) -> f32 {
-    value as f32
 }
