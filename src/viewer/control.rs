@@ -376,16 +376,16 @@ pub(super) fn typed(text: &str) -> Option<f64> {
     text.replace('−', "-").parse().ok().filter(|x: &f64| !x.is_nan())
 }
 
-/// Five significant digits at most.
+/// Five significant digits at most, and no more than five after the point.
 fn shown(x: f64) -> String {
     if x == 0.0 {
         return "0".into();
     }
-    let digits = 4 - x.abs().log10().floor() as i32;
-    if !(0..=10).contains(&digits) {
-        return if digits < 0 && x.abs() < 1e9 { format!("{x:.0}") } else { format!("{x:.4e}") };
+    let magnitude = x.abs().log10().floor() as i32;
+    if !(-4..9).contains(&magnitude) {
+        return format!("{x:.2e}");
     }
-    let text = format!("{x:.*}", digits as usize);
+    let text = format!("{x:.*}", (4 - magnitude).clamp(0, 5) as usize);
     match text.contains('.') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
         false => text,
@@ -415,9 +415,9 @@ mod tests {
             (1.0 / 3.0, "0.33333"),
             (123_456.7, "123457"),
             (1000.0, "1000"),
-            (1.0 / 255.0, "0.0039216"),
-            (1e-9, "1.0000e-9"),
-            (1e12, "1.0000e12"),
+            (1.0 / 255.0, "0.00392"),
+            (1e-9, "1.00e-9"),
+            (1e12, "1.00e12"),
         ] {
             assert_eq!(shown(x), text);
         }

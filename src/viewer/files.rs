@@ -15,6 +15,7 @@ use super::inspector::Selection;
 use super::path_field::PathField;
 use crate::document::recovery::Found;
 use crate::document::{Document, DocumentError, Save, TEMPLATES};
+use crate::scene::Scene;
 use crate::session::live::Export;
 
 /// Unsaved work is kept after this much rest.
@@ -43,7 +44,28 @@ pub(super) enum For {
     /// To write a picture to it.
     Export(ExportForm),
     /// To use it in place of a mesh that a scene misses.
-    Locate { scene: PathBuf, missing: String },
+    Locate { source: Source, located: Located, missing: String },
+}
+
+/// What a document is opened from.
+#[derive(Clone, Debug)]
+pub(super) enum Source {
+    /// A scene file.
+    File(PathBuf),
+    /// Work of a run that ended without saving it.
+    Found(Found),
+}
+
+/// Meshes that were not where the scene said, and where the person found them.
+pub(super) type Located = Vec<(String, PathBuf)>;
+
+impl Source {
+    fn open(&self, located: &Located) -> Result<Document, DocumentError> {
+        match self {
+            Source::File(path) => Document::open_relocated(path, located),
+            Source::Found(found) => found.open_relocated(located),
+        }
+    }
 }
 
 /// What waits for the person, over the window.
@@ -55,7 +77,7 @@ pub(super) enum Modal {
     /// A file, typed.
     Path(PathField, For),
     /// A scene that could not be opened; the second part names a mesh that may be located.
-    BadScene { path: PathBuf, message: String, missing: Option<String> },
+    BadScene { source: Source, located: Located, message: String, missing: Option<String> },
     /// The file to be replaced was changed by another program.
     Changed { save: Save, message: String, next: Option<Next> },
     /// Work of a run that ended without saving it.
@@ -64,8 +86,18 @@ pub(super) enum Modal {
 
 /// What threads have done.
 enum Done {
-    Opened { path: PathBuf, result: Box<Result<Document, DocumentError>> },
-    Saved { save: Save, result: Result<(), DocumentError>, next: Option<Next> },
+    /// With the scene that was open when it began.
+    Opened {
+        source: Source,
+        located: Located,
+        before: Box<Scene>,
+        result: Box<Result<Document, DocumentError>>,
+    },
+    Saved {
+        save: Save,
+        result: Result<(), DocumentError>,
+        next: Option<Next>,
+    },
     Kept(Result<(), DocumentError>),
 }
 
@@ -156,9 +188,15 @@ impl Files {
 impl App {
     /// Reads a scene file in a thread.
     pub(super) fn open_in_background(&mut self, ctx: &Context, path: PathBuf) {
+        self.open_source(ctx, Source::File(path), Vec::new());
+    }
+
+    /// Opens a document in a thread.
+    pub(super) fn open_source(&mut self, ctx: &Context, source: Source, located: Located) {
+        let before = Box::new(self.document.scene().clone());
         self.files.work(ctx, move || {
-            let result = Box::new(Document::open(&path));
-            Done::Opened { path, result }
+            let result = Box::new(source.open(&located));
+            Done::Opened { source, located, before, result }
         });
     }
 
@@ -267,10 +305,10 @@ impl App {
                     Err(message) => self.notices.error(message),
                 }
             }
-            For::Locate { scene, missing } => self.files.work(ctx, move || {
-                let result = Box::new(Document::open_with(&scene, &missing, &file));
-                Done::Opened { path: scene, result }
-            }),
+            For::Locate { source, mut located, missing } => {
+                located.push((missing, file));
+                self.open_source(ctx, source, located);
+            }
         }
     }
 
@@ -315,16 +353,13 @@ impl App {
 
     fn receive_done(&mut self, ctx: &Context, done: Done) {
         match done {
-            Done::Opened { path, result } => match *result {
-                Ok(document) => {
-                    self.replace_document(document);
-                    self.remember_file(&path);
-                }
+            Done::Opened { source, located, before, result } => match *result {
+                Ok(document) => self.opened(source, &before, document),
                 Err(DocumentError { message, missing, changed_on_disk: _ }) => {
                     if self.shown.is_none() {
                         self.show_scene();
                     }
-                    self.files.show(Modal::BadScene { path, message, missing });
+                    self.files.show(Modal::BadScene { source, located, message, missing });
                 }
             },
             Done::Saved { save, result: Ok(()), next } => {
@@ -387,14 +422,20 @@ impl App {
         self.files.discard_recovered();
     }
 
-    /// Opens recovered work.
-    pub(super) fn recover(&mut self, found: Found) {
-        match found.open() {
-            Ok(document) => {
+    /// Shows what was opened, unless there were edits since it was asked for: they are not lost.
+    fn opened(&mut self, source: Source, before: &Scene, document: Document) {
+        let edited = self.document.is_unsaved() && self.document.scene() != before;
+        match source {
+            Source::File(path) if edited => self.files.show(Modal::Unsaved(Next::Open(path))),
+            Source::Found(found) if edited => self.files.show(Modal::Recover(vec![found])),
+            Source::File(path) => {
+                self.replace_document(document);
+                self.remember_file(&path);
+            }
+            Source::Found(found) => {
                 self.replace_document(document);
                 self.files.recovered = Some(found);
             }
-            Err(error) => self.notices.error(error.message),
         }
     }
 }

@@ -5,7 +5,7 @@ use eframe::egui::{Context, Id, Modal as EguiModal, RichText, ScrollArea, Ui};
 use super::app::App;
 use super::dialog::Purpose;
 use super::export::ExportChoice;
-use super::files::{For, Modal, Next};
+use super::files::{For, Modal, Next, Source};
 use super::path_field::Choice;
 use crate::document::Save;
 use crate::document::recovery::Found;
@@ -48,7 +48,7 @@ impl App {
                     None
                 }
             },
-            Modal::BadScene { path, message, missing } => {
+            Modal::BadScene { source, located, message, missing } => {
                 let mut stays = true;
                 bad_scene_ui(ui, &message);
                 ui.horizontal(|ui| {
@@ -58,7 +58,8 @@ impl App {
                             .on_hover_text(format!("Shows where {mesh} is now"))
                             .clicked()
                     {
-                        let what = For::Locate { scene: path.clone(), missing: mesh.clone() };
+                        let (source, located) = (source.clone(), located.clone());
+                        let what = For::Locate { source, located, missing: mesh.clone() };
                         self.ask(ui.ctx(), Purpose::Locate, String::new(), what);
                         stays = false;
                     }
@@ -67,7 +68,7 @@ impl App {
                         stays = false;
                     }
                 });
-                stays.then_some(Modal::BadScene { path, message, missing })
+                stays.then_some(Modal::BadScene { source, located, message, missing })
             }
             Modal::Changed { save, message, next } => self.changed_ui(ui, save, message, next),
             Modal::Recover(found) => self.recover_ui(ui, found),
@@ -155,7 +156,7 @@ impl App {
         let later = ui.button("Later").on_hover_text("Keeps it; asks again at the next start");
         if let Some(i) = opened {
             let item = found.remove(i);
-            self.recover(item);
+            self.open_source(ui.ctx(), Source::Found(item), Vec::new());
             // The rest is found again at the next start.
             return None;
         }

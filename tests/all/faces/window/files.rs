@@ -8,10 +8,10 @@ use super::*;
 use crate::faces::{SCENE, names_in};
 
 /// A scene of one mesh in `m.obj`.
-const MESH_SCENE: &str = "version = 1\n\n[picture]\nsize = [16, 9]\n\n[lights]\n\
+pub(super) const MESH_SCENE: &str = "version = 1\n\n[picture]\nsize = [16, 9]\n\n[lights]\n\
     key = { point = [-4, -5, 7] }\n\n[materials.grey]\ndiffuse = 0.8\n\n[solids]\n\
     sheet = { mesh = { file = \"m.obj\" }, material = \"grey\" } # beside this file\n";
-const MESH: &str = "v -9 0 -9\nv 9 0 -9\nv 0 0 9\nf 1 2 3\n";
+pub(super) const MESH: &str = "v -9 0 -9\nv 9 0 -9\nv 0 0 9\nf 1 2 3\n";
 
 /// A file dropped on the window.
 #[derive(Debug)]

@@ -1,5 +1,6 @@
 //! Unsaved work of a run that was killed.
 
+use super::files::{MESH, MESH_SCENE};
 use super::*;
 use crate::faces::{SCENE, names_in};
 
@@ -12,8 +13,12 @@ fn kept(folder: &Path) -> Vec<PathBuf> {
 
 /// A window with work that is kept but not saved.
 fn working() -> Window {
-    let mut window = Window::with_scene(SCENE, Vec::new());
-    window.click("mirror");
+    worked(Window::with_scene(SCENE, Vec::new()), "mirror")
+}
+
+/// The window, once an edit of a material is kept.
+fn worked(mut window: Window, material: &str) -> Window {
+    window.click(material);
     window.drag_slider("diffuse", 0.9);
     let folder = window.folder.path().to_owned();
     window.until("the work is kept", |_| !kept(&folder).is_empty());
@@ -23,12 +28,17 @@ fn working() -> Window {
 /// A new run beside the work of a dead one: a copy of its file, without the lock that the living
 /// window of this process still holds.
 fn after_the_death_of(dead: &Window) -> Window {
+    after_the_death_with(dead, Vec::new())
+}
+
+/// The same, with answers for dialogs.
+fn after_the_death_with(dead: &Window, answers: Vec<Answer>) -> Window {
     let folder = tempfile::tempdir().unwrap();
     std::fs::create_dir(folder.path().join("unsaved")).unwrap();
     for file in kept(dead.folder.path()) {
         std::fs::copy(&file, folder.path().join("unsaved/unsaved-1-1.json")).unwrap();
     }
-    let mut window = Window::in_folder(folder, None, Vec::new());
+    let mut window = Window::in_folder(folder, None, answers);
     window.until_text("Unsaved work was found");
     window.until_text("scene.toml, ");
     window
@@ -40,9 +50,10 @@ fn work_of_a_killed_run_is_recovered_unsaved_and_belongs_to_its_file() {
     let mut window = after_the_death_of(&dead);
     let folder = window.folder.path().to_owned();
     window.click("Recover");
+    let file = dead.file("scene.toml");
+    window.until("it is open", |app| app.document().path() == Some(&file));
     assert!(window.app().document().scene() == dead.app().document().scene());
     assert!(window.app().document().is_unsaved());
-    assert_eq!(window.app().document().path(), Some(&*dead.file("scene.toml")));
     assert!(!kept(&folder).is_empty(), "the work is never without a copy");
     window.until_exact();
     assert!(window.picture() == dead.picture());
@@ -61,6 +72,29 @@ fn recovered_work_that_is_kept_anew_is_not_kept_twice() {
     window.click("Recover");
     window.until("the old copy is gone", |_| !old.exists());
     assert_eq!(kept(&folder).len(), 1, "and a new one is there");
+}
+
+#[test]
+fn a_mesh_that_is_lost_meanwhile_can_be_located() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, mesh) = (folder.path().join("scene.toml"), folder.path().join("m.obj"));
+    std::fs::write(&scene, MESH_SCENE).unwrap();
+    std::fs::write(&mesh, MESH).unwrap();
+    let mut dead = Window::in_folder(folder, Some(scene.clone()), Vec::new());
+    dead.until("the scene is open", |app| app.document().path() == Some(&scene));
+    dead.until_exact();
+    let dead = worked(dead, "grey");
+    let moved = dead.file("moved.obj");
+    std::fs::rename(&mesh, &moved).unwrap();
+
+    let mut window = after_the_death_with(&dead, vec![Answer::File(moved)]);
+    window.click("Recover");
+    window.until_text("m.obj");
+    window.click("Locate…");
+    window.until("it is open", |app| app.document().path() == Some(&scene));
+    window.until_exact();
+    assert!(window.app().document().is_unsaved());
+    assert!(window.picture() == dead.picture());
 }
 
 #[test]
