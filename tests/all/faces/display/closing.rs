@@ -34,9 +34,9 @@ fn unsaved_work_is_asked_about() {
         desk.click(button);
         if answer == "Cancel" {
             twin.click(button);
-            twin.hover(super::REST);
-            desk.point(super::REST);
-            desk.until_like(&mut twin, "the window stays");
+            let button = twin.place("1:1");
+            desk.until_part_like(&mut twin, button, "the window stays");
+            desk.rest(&mut twin);
             twin.press_ctrl(Key::O);
         }
     }

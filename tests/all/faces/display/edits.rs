@@ -32,11 +32,9 @@ pub(super) fn drag_diffuse(desk: &mut Desk, twin: &mut Twin) -> (Shot, Shot, Vec
     let material = twin.rect(Role::Button, "mirror").center();
     twin.click(material);
     desk.click(material);
-    for step in [twin.rect(Role::Slider, "diffuse").center(), REST] {
-        twin.hover(step);
-        desk.point(step);
-    }
-    desk.until_like(twin, "the material is shown");
+    let heading = twin.place("Material mirror");
+    desk.until_part_like(twin, heading, "the material is selected");
+    desk.rest(twin);
     let before = desk.server.shot();
     let mut places = vec![twin.rect(Role::Image, "picture"), status_line()];
     places.extend([twin.place("Undo"), title(twin, "scene.toml")]);

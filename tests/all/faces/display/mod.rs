@@ -24,7 +24,9 @@ use server::{Ending, Server, Shot};
 use twin::Twin;
 
 /// Longest wait for anything: the machine may be busy.
-const PATIENCE: Duration = Duration::from_secs(8);
+const PATIENCE: Duration = Duration::from_secs(15);
+/// The twin is drawn again after this time: costs arrive by themselves.
+const AGAIN: Duration = Duration::from_millis(500);
 /// Size of most screens.
 const SIZE: [u16; 2] = [1280, 720];
 /// Where the pointer rests: under the outline's lists, where nothing reacts to it.
@@ -99,10 +101,18 @@ impl Desk {
         let middle = twin.rect(Role::Image, "picture").center();
         self.until("a picture shows", |desk| desk.server.shot().pixel(middle) != EMPTY);
         twin.click(button.center());
-        twin.hover(REST);
         self.click(button.center());
+        let mut lower = twin.rect(Role::Image, "picture");
+        *lower.top_mut() = lower.center().y;
+        self.until_part_like(twin, lower, "the picture has its own size");
+        self.rest(twin);
+    }
+
+    /// Moves the pointer to where it touches nothing, and waits for the twin to agree.
+    fn rest(&mut self, twin: &mut Twin) {
+        twin.hover(REST);
         self.point(REST);
-        self.until_like(twin, "the picture has its own size");
+        self.until_like(twin, "the pointer rests");
     }
 
     fn file(&self, name: &str) -> PathBuf {
@@ -178,8 +188,13 @@ impl Desk {
     /// Waits until a part of the screen shows what the twin shows there.
     fn until_part_like(&mut self, twin: &mut Twin, part: Rect, what: &str) {
         let start = Instant::now();
+        let mut wanted = twin.shot();
+        let mut again = start + AGAIN;
         loop {
-            let (shot, wanted) = (self.server.shot(), twin.shot());
+            if Instant::now() > again {
+                (wanted, again) = (twin.shot(), Instant::now() + AGAIN);
+            }
+            let shot = self.server.shot();
             let different = shot.differences(&wanted, part, &[], TOLERANCE);
             if different.is_empty() {
                 return;
@@ -217,10 +232,11 @@ impl Desk {
         self.until_changed(&before, around, what);
     }
 
+    /// Clicks, and leaves the pointer there: the caller waits for what the click does.
     fn click(&mut self, at: Pos2) {
         self.watched(at, "it lights up", |desk| desk.point(at));
-        self.watched(at, "it is held", |desk| desk.server.xdotool(&["mousedown", "1"]));
-        self.watched(at, "it is let go", |desk| desk.server.xdotool(&["mouseup", "1"]));
+        // a button that is held for long is not clicked
+        self.server.xdotool(&["mousedown", "1", "mouseup", "1"]);
     }
 
     /// Presses keys, such as `ctrl+s`.
@@ -251,7 +267,10 @@ impl Desk {
                 assert!(!self.messages().contains("panicked"), "{}", self.messages());
                 return status;
             }
-            assert!(start.elapsed() < PATIENCE, "the program does not end");
+            if start.elapsed() > PATIENCE {
+                let shot = self.server.shot().keep("display-waiting");
+                panic!("the program does not end; see {}", shot.display());
+            }
             std::thread::sleep(Duration::from_millis(10));
         }
     }

@@ -90,9 +90,9 @@ fn killed_at_any_moment_the_kept_work_is_whole() {
         let material = twin.rect(Role::Button, "mirror").center();
         twin.click(material);
         desk.click(material);
-        twin.hover(super::REST);
-        desk.point(super::REST);
-        desk.until_like(&mut twin, "the material is shown");
+        let heading = twin.place("Material mirror");
+        desk.until_part_like(&mut twin, heading, "the material is selected");
+        desk.rest(&mut twin);
     }
     assert_eq!(desk.scene_text(), COMMENTED);
 }
