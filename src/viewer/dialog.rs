@@ -85,10 +85,17 @@ const INSTANT: Duration = Duration::from_millis(300);
 /// After this time without an answer and without a lost focus there is no service.
 const PATIENCE: Duration = Duration::from_secs(4);
 
+/// A question that the system was asked.
+struct Asked {
+    start: Instant,
+    /// The file, if there is one, and how long the system took.
+    receive: Receiver<(Option<PathBuf>, Duration)>,
+}
+
 /// The dialogs of the system.
 #[derive(Default)]
 pub struct SystemDialogs {
-    asked: Option<(Instant, Receiver<Option<PathBuf>>)>,
+    asked: Option<Asked>,
     /// The window lost the keyboard since the question: some dialog shows.
     seen: bool,
 }
@@ -105,22 +112,24 @@ impl Dialogs for SystemDialogs {
             } else {
                 Box::pin(dialog.pick_file())
             };
+        let start = Instant::now();
         std::thread::spawn(move || {
             let file = pollster::block_on(future).map(|handle| handle.path().to_owned());
             // A window that is closed meanwhile has no use for the answer.
-            let _ = send.send(file);
+            let _ = send.send((file, start.elapsed()));
             ctx.request_repaint();
         });
-        (self.asked, self.seen) = (Some((Instant::now(), receive)), false);
+        (self.asked, self.seen) = (Some(Asked { start, receive }), false);
     }
 
     fn answer(&mut self, focused: bool) -> Answer {
-        let Some((start, receive)) = &self.asked else { return Answer::Cancelled };
+        let Some(Asked { start, receive }) = &self.asked else { return Answer::Cancelled };
         self.seen |= !focused;
         let answer = match receive.try_recv() {
-            Ok(Some(file)) => Answer::File(file),
-            Ok(None) if start.elapsed() < INSTANT => Answer::NoService,
-            Ok(None) => Answer::Cancelled,
+            Ok((Some(file), _)) => Answer::File(file),
+            // a busy machine may be slow to find out that there is nobody
+            Ok((None, took)) if took < INSTANT || !self.seen => Answer::NoService,
+            Ok((None, _)) => Answer::Cancelled,
             Err(TryRecvError::Disconnected) => Answer::NoService,
             Err(TryRecvError::Empty) if !self.seen && start.elapsed() > PATIENCE => {
                 Answer::NoService
@@ -167,6 +176,8 @@ pub(super) fn with_ending(path: &Path, purpose: Purpose) -> PathBuf {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::mpsc::Sender;
+
     use super::*;
 
     #[test]
@@ -175,23 +186,39 @@ mod tests {
         assert_eq!(with_ending(Path::new("b.exr"), Purpose::Export), Path::new("b.exr"));
     }
 
+    /// Dialogs that were asked `ago`, whether one took the keyboard, and the way to answer.
+    fn asked(ago: Duration, seen: bool) -> (SystemDialogs, Sender<(Option<PathBuf>, Duration)>) {
+        let (send, receive) = channel();
+        let start = Instant::now() - ago;
+        (SystemDialogs { asked: Some(Asked { start, receive }), seen }, send)
+    }
+
     #[test]
     fn silence_and_haste_mean_that_nobody_can_be_asked() {
-        let (send, receive) = channel();
-        let mut dialogs = SystemDialogs { asked: Some((Instant::now(), receive)), seen: false };
+        let (mut dialogs, send) = asked(Duration::ZERO, false);
         assert_eq!(dialogs.answer(true), Answer::Waiting);
-        send.send(None).unwrap();
+        send.send((None, INSTANT / 2)).unwrap();
         assert_eq!(dialogs.answer(true), Answer::NoService);
-        let long_ago = Instant::now() - PATIENCE - INSTANT;
-        let (_silent, receive) = channel();
-        dialogs = SystemDialogs { asked: Some((long_ago, receive)), seen: false };
+        let long = PATIENCE + INSTANT;
+        let (mut dialogs, _silent) = asked(long, false);
         assert_eq!(dialogs.answer(true), Answer::NoService);
-        let (send, receive) = channel();
-        dialogs = SystemDialogs { asked: Some((long_ago, receive)), seen: false };
+        let (mut dialogs, send) = asked(long, false);
         // A window that lost the keyboard shows its dialog: it may take all the time it wants.
         assert_eq!(dialogs.answer(false), Answer::Waiting);
         assert_eq!(dialogs.answer(true), Answer::Waiting);
-        send.send(None).unwrap();
+        send.send((None, long)).unwrap();
         assert_eq!(dialogs.answer(true), Answer::Cancelled);
+    }
+
+    #[test]
+    fn a_busy_machine_takes_its_time_to_find_out_that_nobody_can_be_asked() {
+        // the system was quick, the window was slow to look
+        let (mut dialogs, send) = asked(PATIENCE / 2, true);
+        send.send((None, INSTANT / 2)).unwrap();
+        assert_eq!(dialogs.answer(true), Answer::NoService);
+        // the system was slow, but nothing ever took the keyboard
+        let (mut dialogs, send) = asked(PATIENCE / 2, false);
+        send.send((None, PATIENCE / 2)).unwrap();
+        assert_eq!(dialogs.answer(true), Answer::NoService);
     }
 }

@@ -24,7 +24,7 @@ use server::{Ending, Server, Shot};
 use twin::Twin;
 
 /// Longest wait for anything: the machine may be busy.
-const PATIENCE: Duration = Duration::from_secs(15);
+const PATIENCE: Duration = Duration::from_secs(60);
 /// The twin is drawn again after this time: costs arrive by themselves.
 const AGAIN: Duration = Duration::from_millis(500);
 /// Size of most screens.

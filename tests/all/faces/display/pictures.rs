@@ -6,10 +6,14 @@ use eframe::egui::{Pos2, pos2};
 
 use super::Desk;
 
-/// Waits until the screen has been the same for a while.
+/// A screen that is the same for this long has come to rest.
+const REST: Duration = Duration::from_millis(1200);
+
+/// Waits until the screen has been the same for a while; not for ever, as a text cursor blinks.
 fn until_still(desk: &Desk) {
-    let (mut last, mut since) = (desk.server.shot(), Instant::now());
-    while since.elapsed() < Duration::from_millis(1500) {
+    let start = Instant::now();
+    let (mut last, mut since) = (desk.server.shot(), start);
+    while since.elapsed() < REST && start.elapsed() < 6 * REST {
         std::thread::sleep(Duration::from_millis(100));
         let shot = desk.server.shot();
         if shot != last {
@@ -40,15 +44,18 @@ fn take_pictures(size: [u16; 2], zoom_percent: u32, theme: &str) {
     take("scene", &desk);
     for (name, row) in [("material", 120.0), ("light", 195.0), ("solid", 245.0)] {
         desk.click(at(pos2(58.0, row)));
+        until_still(&desk);
         desk.point(rest);
         take(name, &desk);
     }
     desk.click(at(pos2(20.0, 14.0)));
     take("menu", &desk);
     desk.press("Escape");
+    until_still(&desk);
     desk.press("ctrl+e");
     take("export", &desk);
     desk.press("Escape");
+    until_still(&desk);
     desk.press("ctrl+shift+s");
     take("path", &desk);
 }
