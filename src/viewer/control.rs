@@ -179,7 +179,8 @@ fn threshold_ui(ui: &Ui, slider: &Response, cost: Option<Cost>, low: f64, high: 
     let rect = slider.rect.shrink2(vec2(slider.rect.height() / 2.5, 0.0));
     let at = rect.left() + rect.width() * ((x - low) / (high - low)) as f32;
     let stroke = Stroke::new(1.5, Color32::from_rgb(200, 140, 30));
-    let line = [pos2(at, rect.center().y - 7.0), pos2(at, rect.center().y - 3.0)];
+    // Below the rail, so that the handle does not hide it.
+    let line = [pos2(at, rect.center().y + 4.0), pos2(at, rect.bottom())];
     ui.painter().line_segment(line, stroke);
 }
 

@@ -1,6 +1,6 @@
 //! The scene as a list: what is in it, and what is selected.
 
-use eframe::egui::{CollapsingHeader, Color32, Rgba, ScrollArea, Sense, Ui, vec2};
+use eframe::egui::{CollapsingHeader, Color32, Rgba, ScrollArea, Sense, Stroke, Ui, vec2};
 
 use super::inspector::Selection;
 use crate::color::Rgb;
@@ -62,7 +62,7 @@ fn row_ui(ui: &mut Ui, name: &str, about: &str, selected: bool, color: Color32) 
     ui.horizontal(|ui| {
         let height = ui.spacing().interact_size.y;
         let (rect, _) = ui.allocate_exact_size(vec2(10.0, height), Sense::hover());
-        let outline = ui.visuals().widgets.noninteractive.bg_stroke;
+        let outline = Stroke::new(1.0, ui.visuals().weak_text_color());
         ui.painter().circle(rect.center(), 5.0, color, outline);
         ui.selectable_label(selected, name).on_hover_text(about).clicked()
     })

@@ -103,6 +103,7 @@ impl PathField {
                 format!("{} exists: press again to replace it", path.display()),
             );
         }
+        ui.add_space(6.0);
         let mut choice = None;
         ui.horizontal(|ui| {
             let verb = if self.question.purpose.writes() { "Save" } else { "Open" };

@@ -86,8 +86,8 @@ fn edit_about(report: &EditReport) -> String {
 }
 
 fn cache_text(status: &Status) -> String {
-    let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
-    format!("kept {:.0} MB of {:.0} MB", mib(status.bytes), mib(status.budget))
+    let megabytes = |bytes: u64| bytes as f64 / 1e6;
+    format!("kept {:.0} MB of {:.0} MB", megabytes(status.bytes), megabytes(status.budget))
 }
 
 #[cfg(test)]

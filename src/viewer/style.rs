@@ -10,6 +10,8 @@ use crate::document::settings::{Settings, Theme};
 /// Gives the window its look; once, at the start.
 pub(super) fn set_up(ctx: &Context) {
     ctx.set_fonts(fonts());
+    // Who presses slowly, or on a machine that draws slowly, has clicked all the same.
+    ctx.options_mut(|options| options.input_options.max_click_duration = 2.0);
     for theme in [EguiTheme::Dark, EguiTheme::Light] {
         ctx.style_mut_of(theme, |style| {
             spacing(style);
@@ -69,6 +71,8 @@ fn visuals(theme: EguiTheme) -> Visuals {
     v.widgets.inactive.fg_stroke.color = text;
     v.widgets.open.fg_stroke.color = text;
     if theme == EguiTheme::Light {
+        // The rail of a slider, which would hardly stand out from the panel.
+        v.widgets.inactive.bg_fill = grey(200);
         v.hyperlink_color = Color32::from_rgb(0, 95, 190);
         v.selection.bg_fill = Color32::from_rgb(170, 205, 245);
         v.selection.stroke.color = grey(10);
