@@ -82,19 +82,12 @@ impl App {
     fn unsaved_ui(&mut self, ui: &mut Ui, next: Next) -> Option<Modal> {
         ui.heading(format!("Save the changes to {}?", self.document.title()));
         ui.label("Without saving they are lost.");
-        let mut answer = None;
-        ui.horizontal(|ui| {
-            for (name, about, value) in [
-                ("Save", "Saves, then goes on", Unsaved::Save),
-                ("Do not save", "Gives the changes up and goes on", Unsaved::Discard),
-                ("Cancel", "Goes on editing", Unsaved::Stay),
-            ] {
-                if ui.button(name).on_hover_text(about).clicked() {
-                    answer = Some(value);
-                }
-            }
-        });
-        match answer {
+        let choices = [
+            ("Save", "Saves, then goes on", Unsaved::Save),
+            ("Do not save", "Gives the changes up and goes on", Unsaved::Discard),
+            ("Cancel", "Goes on editing", Unsaved::Stay),
+        ];
+        match buttons_ui(ui, choices) {
             None => return Some(Modal::Unsaved(next)),
             Some(Unsaved::Save) => self.save(ui.ctx(), Some(next)),
             Some(Unsaved::Discard) => self.go_on(ui.ctx(), next),
@@ -112,19 +105,12 @@ impl App {
     ) -> Option<Modal> {
         ui.heading("The file was changed by another program");
         ui.label(&message);
-        let mut answer = None;
-        ui.horizontal(|ui| {
-            for (name, about, value) in [
-                ("Overwrite", "Replaces the file; the one before it becomes NAME~", Overwrite::Yes),
-                ("Save as…", "Asks for another file", Overwrite::Elsewhere),
-                ("Cancel", "Saves nothing", Overwrite::No),
-            ] {
-                if ui.button(name).on_hover_text(about).clicked() {
-                    answer = Some(value);
-                }
-            }
-        });
-        match answer {
+        let choices = [
+            ("Overwrite", "Replaces the file; the one before it becomes NAME~", Overwrite::Yes),
+            ("Save as…", "Asks for another file", Overwrite::Elsewhere),
+            ("Cancel", "Saves nothing", Overwrite::No),
+        ];
+        match buttons_ui(ui, choices) {
             None => return Some(Modal::Changed { save, message, next }),
             Some(Overwrite::Yes) => {
                 let mut save = save;
@@ -170,6 +156,19 @@ impl App {
 /// Whether a click beside the question or Escape answers it: yes, where nothing is lost by it.
 fn closes_lightly(modal: &Option<Modal>) -> bool {
     !matches!(modal, Some(Modal::Recover(_)))
+}
+
+/// A row of buttons, each with its name, what it does, and what it means; what was pressed.
+fn buttons_ui<T>(ui: &mut Ui, choices: [(&str, &str, T); 3]) -> Option<T> {
+    let mut pressed = None;
+    ui.horizontal(|ui| {
+        for (name, about, meaning) in choices {
+            if ui.button(name).on_hover_text(about).clicked() {
+                pressed = Some(meaning);
+            }
+        }
+    });
+    pressed
 }
 
 fn bad_scene_ui(ui: &mut Ui, message: &str) {
