@@ -39,13 +39,8 @@ impl Document {
         Document::open_relocated(path, &[])
     }
 
-    /// Opens a scene file with a mesh file replaced: the text, so edited, counts as unsaved.
-    pub fn open_with(path: &Path, missing: &str, found: &Path) -> Result<Document, DocumentError> {
-        Document::open_relocated(path, &[(missing.to_owned(), found.to_owned())])
-    }
-
-    /// [`Document::open_with`] for several mesh files. Others that are missing are also sought beside
-    /// those that were found.
+    /// Opens a scene file with mesh files that were found elsewhere, by their missing names: the text,
+    /// so edited, counts as unsaved. Others that are missing are also sought beside those found.
     pub fn open_relocated(
         path: &Path,
         found: &[(String, PathBuf)],

@@ -239,7 +239,8 @@ fn a_missing_mesh_is_named_and_can_be_located() {
     let place = folder.path().join("parts/m.obj");
     assert!(error.message.contains(&format!("was sought at {}", place.display())), "{error}");
     assert!(error.message.contains("s.toml:5:17: "), "{error}");
-    let document = Document::open_with(&path, "parts/m.obj", &moved).unwrap();
+    let document =
+        Document::open_relocated(&path, &[("parts/m.obj".into(), moved.clone())]).unwrap();
     assert!(document.is_unsaved() && document.undo_name().is_none());
     let save = document.save(&path).unwrap();
     assert_eq!(save.text, WITH_MESH.replace("parts/m.obj", "moved.obj"));
