@@ -1,7 +1,7 @@
 //! Puts blocks that were folded again into a tile of the matrix.
 
 use super::transport::{
-    BlockStart, Frontier, FrontierMark, HighlightList, Highlights, Single, TransportTile,
+    Block, BlockStart, Frontier, FrontierMark, HighlightList, Highlights, Single, TransportTile,
 };
 use crate::film::layout::TILE_BLOCKS;
 
@@ -22,12 +22,8 @@ impl TransportTile {
             starts: vec![BlockStart::default()],
             ..TransportTile::default()
         };
-        tile.frontier.terms = union(
-            &self.frontier.terms,
-            &old.frontier,
-            &part.frontier.terms,
-            &new.frontier,
-        );
+        tile.frontier.terms =
+            union(&self.frontier.terms, &old.frontier, &part.frontier.terms, &new.frontier);
         tile.frontier.starts.push(0);
         if self.highlights.is_some() && part.highlights.is_some() {
             tile.highlights = Some(Highlights::default());
@@ -44,6 +40,17 @@ impl TransportTile {
         }
         tile.shrink();
         tile
+    }
+
+    /// Bytes of the rows of the blocks of a set.
+    pub fn bytes_of_blocks(&self, blocks: Blocks) -> usize {
+        let count = self.starts.len() - 1;
+        let of = |block| {
+            let Block { entries, planes, singles } = self.block(block);
+            let marks = self.frontier.block(block);
+            size_of_val(entries) + size_of_val(planes) + size_of_val(singles) + size_of_val(marks)
+        };
+        (0..count).filter(|block| blocks >> block & 1 != 0).map(of).sum()
     }
 
     fn shrink(&mut self) {
@@ -100,18 +107,10 @@ impl<'a> Source<'a> {
     }
 
     fn cursor(self, into: &TransportTile) -> Cursor<'a> {
-        let places = |from: &[u32], into: &[u32]| {
-            let mut next = 0;
-            let place = |term: &u32| {
-                next += into[next..].partition_point(|t| t < term);
-                next as u32
-            };
-            from.iter().map(place).collect()
-        };
         Cursor {
             tile: self.tile,
-            terms: places(&self.tile.terms, &into.terms),
-            frontier: places(&self.tile.frontier.terms, &into.frontier.terms),
+            terms: places(&self.tile.terms, &self.terms, &into.terms),
+            frontier: places(&self.tile.frontier.terms, &self.frontier, &into.frontier.terms),
             block: 0,
             list: 0,
             count: 0,
@@ -120,10 +119,23 @@ impl<'a> Source<'a> {
     }
 }
 
+/// Per term its place in a sorted list that holds those that are used. The others, which may be out of
+/// order, have none.
+fn places(terms: &[u32], used: &[bool], list: &[u32]) -> Vec<u32> {
+    let mut next = 0;
+    let place = |(term, used): (&u32, &bool)| {
+        if *used {
+            next += list[next..].partition_point(|t| t < term);
+        }
+        next as u32
+    };
+    terms.iter().zip(used).map(place).collect()
+}
+
 /// Reads a tile block by block.
 struct Cursor<'a> {
     tile: &'a TransportTile,
-    /// Per entry of the dictionary its place in the merged one.
+    /// Per used entry of the dictionary its place in the merged one.
     terms: Vec<u32>,
     frontier: Vec<u32>,
     block: usize,
@@ -145,9 +157,12 @@ impl Cursor<'_> {
             Single::new(entry, single.lane(), single.coefficient)
         }));
         into.starts.push(into.end());
-        let marks = self.tile.frontier.block(self.block).iter().map(|mark| {
-            FrontierMark { entry: self.frontier[mark.entry as usize], ..*mark }
-        });
+        let marks = self
+            .tile
+            .frontier
+            .block(self.block)
+            .iter()
+            .map(|mark| FrontierMark { entry: self.frontier[mark.entry as usize], ..*mark });
         into.frontier.marks.extend(marks);
         into.frontier.starts.push(into.frontier.marks.len() as u32);
         let from = self.tile.starts[self.block];

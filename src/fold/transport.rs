@@ -1,8 +1,8 @@
 //! The transport matrix: pixels times terms, in blocks of sixteen pixels.
 
 use super::trie::Trie;
-use crate::scene::factor::Factor;
 use crate::film::layout::{LANES, Layout, TILE_BLOCKS};
+use crate::scene::factor::Factor;
 
 /// The coefficients of one term for the 16 pixels of a block.
 #[repr(align(64))]
@@ -91,8 +91,7 @@ impl Frontier {
     /// Allocated bytes.
     pub fn bytes(&self) -> usize {
         let Frontier { terms, starts, marks } = self;
-        (terms.capacity() + starts.capacity()) * 4
-            + marks.capacity() * size_of::<FrontierMark>()
+        (terms.capacity() + starts.capacity()) * 4 + marks.capacity() * size_of::<FrontierMark>()
     }
 
     fn validate(&self, terms: usize) {

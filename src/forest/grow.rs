@@ -14,7 +14,7 @@ use crate::film::layout::{LANES, Layout, Place};
 use crate::geometry::{Geometry, Hit, Interaction, Leaving, Ray, Stack};
 use crate::progress::{Cancelled, Progress};
 use crate::scene::factor::{End, Factor, FactorValues, Kind, PathWeight};
-use crate::scene::{LightPlace, Scene};
+use crate::scene::{LightPlace, Material, Scene};
 
 /// What receives the trees: storage, or nothing, so that tracing with and without keeping is the
 /// same code. Nodes arrive in preorder, a node's lights right after it.
@@ -133,6 +133,8 @@ pub struct Grower<'a> {
     lights: Vec<LightPlace>,
     /// Per light the key of its records in kept trees.
     keys: Vec<u16>,
+    /// Per material whether its index of refraction matters.
+    bends: Vec<bool>,
     /// Per solid.
     iors: Vec<f64>,
     /// Per solid the index of refraction with which the kept trees were grown.
@@ -226,6 +228,7 @@ impl<'a> Grower<'a> {
             values,
             lights: scene.lights.iter().map(|l| with_unit_direction(&l.place)).collect(),
             keys,
+            bends: scene.materials.iter().map(Material::ior_matters).collect(),
             iors: geometry.of_solids(&iors),
             iors_before: iors_before.to_vec(),
             view: View::new(&scene.camera, scene.picture.size),
@@ -380,19 +383,14 @@ impl<'a> Grower<'a> {
         let surface = Surface::new(&at, from.ray.direction);
         let crossing = worker.media.cross(from.medium, &at, surface.entering);
         let eta = crossing.eta(&self.iors);
-        let refracted = surface.refract(eta);
-        let reflect_kind = match refracted {
-            Some(_) => Kind::Reflect,
-            None => Kind::TotalReflect,
-        };
+        // What lets nothing through bends nothing, and reflects nothing more than a mirror does.
+        let bends = self.bends[at.material as usize];
+        let refracted = if bends { surface.refract(eta) } else { None };
+        let total = bends && refracted.is_none();
         let follow = |kind| self.values.follow(from.path, Factor::new(kind, at.material, 0));
-        let reflected = follow(reflect_kind);
-        let transmitted = refracted.map(|_| follow(Kind::Transmit));
-        let ends = Ends::new(
-            branch(reflected),
-            transmitted.map_or(Branch::Absent, branch),
-            refracted.is_none(),
-        );
+        let reflected = follow(if total { Kind::TotalReflect } else { Kind::Reflect });
+        let transmitted = (!total).then(|| follow(Kind::Transmit));
+        let ends = Ends::new(branch(reflected), transmitted.map_or(Branch::Absent, branch), total);
         let (material, slot) = (at.material, at.slot);
         let node = Node { t: hit.t, primitive: hit.primitive, material, lights: 0, slot, ends };
         let name = sink.node(node);

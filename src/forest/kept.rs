@@ -86,6 +86,16 @@ impl KeptTrees {
             + crossings.capacity() * 4
     }
 
+    /// Bytes of what is stored, without room for more.
+    pub fn used_bytes(&self) -> usize {
+        let KeptTrees { blocks, hits, nodes, lights, crossings } = self;
+        size_of_val(&**blocks)
+            + size_of_val(&**hits)
+            + size_of_val(&**nodes)
+            + size_of_val(&**lights)
+            + size_of_val(&**crossings)
+    }
+
     /// Appends a block just grown, the first one in `grown`. `keys` has one key per light.
     pub fn push_grown(&mut self, grown: &TileTrees, keys: &[u16]) {
         let TileTrees { blocks: _, hits, nodes, lights, crossings } = grown;

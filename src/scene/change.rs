@@ -66,7 +66,7 @@ impl Change {
         change.surfaces |= !change.keeps_materials() || materials.len() != new.materials.len();
         for (a, b) in solids.iter().zip(&new.solids) {
             change.solid(a, b);
-            change.assigned((a, &materials[a.material]), (b, &new.materials[b.material]));
+            change.assigned(a, materials.get(a.material), b, new.materials.get(b.material));
         }
         change.nodes.sort_unstable();
         change.nodes.dedup();
@@ -213,12 +213,19 @@ impl Change {
     }
 
     /// Compares what a solid is made of.
-    fn assigned(&mut self, old: (&Solid, &Material), new: (&Solid, &Material)) {
-        let before = old.0.material as u16;
-        let differs = self.materials[new.0.material] != Some(before);
+    fn assigned(
+        &mut self,
+        old: &Solid,
+        old_material: Option<&Material>,
+        new: &Solid,
+        new_material: Option<&Material>,
+    ) {
+        let before = old.material as u16;
+        let differs = self.materials.get(new.material) != Some(&Some(before));
         self.node(differs, before, "a solid's material");
         self.surfaces |= differs;
-        self.casts |= differs && !old.1.leads_rays_like(new.1);
+        let alike = old_material.zip(new_material).is_some_and(|(a, b)| a.leads_rays_like(b));
+        self.casts |= differs && !alike;
     }
 
     fn solid(&mut self, old: &Solid, new: &Solid) {

@@ -109,14 +109,12 @@ impl Session {
 
     /// Puts the patches of a plan that was carried out in place: from now on its scene is the
     /// session's. On an error nothing has changed, but for trees that were released.
-    pub(super) fn commit(
-        &mut self,
-        regrow: Regrow,
-        patches: Vec<Patch>,
-    ) -> Result<(), TraceError> {
-        let parts = patches.iter().map(|patch| patch.part.bytes());
-        let matrix = self.transport.bytes() + parts.sum::<usize>();
-        if matrix > regrow.budget {
+    pub(super) fn commit(&mut self, regrow: Regrow, patches: Vec<Patch>) -> Result<(), TraceError> {
+        let replaced = |p: &Patch| self.transport.tiles[p.tile].bytes_of_blocks(p.blocks);
+        let matrix = self.transport.bytes() as u64
+            + patches.iter().map(|p| p.part.bytes_of_blocks(u64::MAX) as u64).sum::<u64>()
+            - patches.iter().map(|p| replaced(p) as u64).sum::<u64>();
+        if matrix > self.options.memory {
             return Err(TraceError::Memory { budget: regrow.budget as u64 });
         }
         let change = Change::between(&self.scene, &regrow.scene);
@@ -214,12 +212,8 @@ impl Regrow {
         done: &(dyn Fn(Patch) + Sync),
     ) -> Result<(), TraceError> {
         progress.begin(self.plan.tiles.len() as u64);
-        let grower = Grower::recalling(
-            &self.scene,
-            &self.geometry,
-            self.keys.clone(),
-            &self.iors_before,
-        );
+        let grower =
+            Grower::recalling(&self.scene, &self.geometry, self.keys.clone(), &self.iors_before);
         let next = AtomicUsize::new(0);
         let results = pool.broadcast(|_| -> Result<(), TraceError> {
             let mut scratch = Scratch {

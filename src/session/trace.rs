@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 use rayon::ThreadPool;
 
 use crate::film::layout::{Layout, TILE_BLOCKS};
-use crate::fold::{Folder, Names};
 use crate::fold::transport::{Highlights, Transport, TransportTile};
 use crate::fold::trie::Trie;
+use crate::fold::{Folder, Names};
 use crate::forest::Forest;
 use crate::forest::grow::{Discard, Grower, MOST_CROSSED, RayCounts, Stop, Worker};
 use crate::forest::kept::KeptTrees;
@@ -369,7 +369,7 @@ impl<'a> Job<'a> {
             outcome.folding += folding.elapsed();
             if whole {
                 trees.push_grown(grown, self.grower.keys());
-                whole = trees.bytes() <= self.tile_limit;
+                whole = trees.used_bytes() <= self.tile_limit;
             }
         }
         Ok(whole)
@@ -390,9 +390,7 @@ impl<'a> Job<'a> {
             trie.mark(known, node.marks);
             global[id] = known;
         }
-        for term in &mut tile.terms {
-            *term = global[*term as usize];
-        }
+        tile.renumber(|id| global[id as usize]);
         tile
     }
 
@@ -441,11 +439,7 @@ impl<'a> Job<'a> {
         let slots = self.slots.into_iter().map(|s| s.into_inner().expect("no worker panicked"));
         let (trees, mut tiles): (Vec<_>, Vec<_>) = slots.map(|s| (s.trees, s.transport)).unzip();
         pool.install(|| {
-            tiles.par_iter_mut().for_each(|tile| {
-                for term in &mut tile.terms {
-                    *term = ranks[*term as usize];
-                }
-            });
+            tiles.par_iter_mut().for_each(|tile| tile.renumber(|id| ranks[id as usize]));
         });
         let (layout, samples) = (self.layout, self.samples);
         let forest = Forest { layout, samples, tiles: trees };

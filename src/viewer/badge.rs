@@ -141,8 +141,9 @@ mod tests {
     #[test]
     fn a_share_is_neither_none_nor_all_unless_it_is() {
         let of = |count| share(Pixels { count, of: 1000 });
-        assert_eq!([0, 1, 9, 10, 126, 999, 1000].map(of), [
-            "0 %", "< 1 %", "< 1 %", "1 %", "13 %", "99 %", "100 %"
-        ]);
+        assert_eq!(
+            [0, 1, 9, 10, 126, 999, 1000].map(of),
+            ["0 %", "< 1 %", "< 1 %", "1 %", "13 %", "99 %", "100 %"]
+        );
     }
 }

@@ -190,7 +190,8 @@ fn a_cost_that_lies_is_caught() {
     lies("camera.eye", Cost::Refold);
     lies("trace.cutoff", Cost::InstantDownTo(0.5, NONE));
     lies("trace.depth", Cost::InstantUpTo(64.0 - 1.0, NONE));
-    let Some(Cost::InstantUpTo(limit, pixels)) = cost(&mut session, "materials.tiles.reflect") else {
+    let Some(Cost::InstantUpTo(limit, pixels)) = cost(&mut session, "materials.tiles.reflect")
+    else {
         panic!("tiles may become a mirror");
     };
     for wrong in [(limit as f32).next_up(), (limit as f32).next_down()] {

@@ -179,12 +179,7 @@ fn what_is_added_removed_or_exchanged() {
             Refold,
             Refold,
         ),
-        (
-            "a parallel view",
-            |s| s.camera.lens = Lens::Parallel { height: 4.5 },
-            Retrace,
-            Retrace,
-        ),
+        ("a parallel view", |s| s.camera.lens = Lens::Parallel { height: 4.5 }, Retrace, Retrace),
     ];
     let mut session = open(&scene, 2);
     for (what, change, there, back) in changes {
@@ -242,7 +237,7 @@ fn materials_come_and_go() {
             other => other,
         };
     }
-    edit_is(&mut session, scene.clone(), Class::Regrow, "another order");
+    edit_is(&mut session, scene.clone(), Class::Refold, "another order");
     set(&mut scene, "solids.cube.material", "brass");
     edit_is(&mut session, scene.clone(), Class::Regrow, "another material");
     let plain = scene.materials.iter().position(|m| m.name == "plain").unwrap();

@@ -78,8 +78,10 @@ impl Pair<'_> {
         assert_eq!((kept.t, kept.primitive), (fresh.t, fresh.primitive), "the same rays");
         self.kept.node += 1;
         self.fresh.node += 1;
-        for _ in 0..kept.lights {
+        for _ in 0..fresh.lights {
             self.fresh.witness();
+        }
+        for _ in 0..kept.lights {
             if self.kept.witness().is_some_and(|m| !self.opaque[m as usize]) {
                 return true;
             }

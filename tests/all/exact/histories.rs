@@ -187,9 +187,13 @@ fn wander(name: &str, size: [u32; 2], samples: u32) {
         same_files_in_a_fresh_process(&session, &told);
     }
     let count = |class| classes.iter().filter(|c| **c == class).count();
-    let counts = [Class::None, Class::Reshade, Class::Refold, Class::Regrow, Class::Retrace].map(count);
+    let counts =
+        [Class::None, Class::Reshade, Class::Refold, Class::Regrow, Class::Retrace].map(count);
     eprintln!("{name}: none, reshade, refold, regrow, retrace: {counts:?} times");
-    assert!(counts[1] > counts[4] && counts[2] > 0 && counts[3] > 0 && counts[4] > 0, "{name}: {counts:?}");
+    assert!(
+        counts[1] > counts[4] && counts[2] > 0 && counts[3] > 0 && counts[4] > 0,
+        "{name}: {counts:?}"
+    );
 }
 
 #[test]

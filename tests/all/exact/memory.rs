@@ -54,7 +54,7 @@ fn released_trees_change_no_picture_and_grow_again_on_demand() {
     }
     assert_eq!(edited(&mut session, "materials.tiles.diffuse", "0.2"), Class::Reshade);
     assert_eq!(edited(&mut session, "materials.tiles.shininess", "9"), Class::Refold);
-    assert_eq!(edited(&mut session, "materials.tiles.reflect", "0.4"), Class::Retrace);
+    assert_eq!(edited(&mut session, "materials.tiles.reflect", "0.4"), Class::Regrow);
     assert_eq!(edited(&mut session, "materials.tiles.reflect", "0"), Class::Reshade);
 }
 
@@ -67,7 +67,7 @@ fn released_highlight_lists_change_no_picture_and_a_new_exponent_says_so() {
         assert!(lists_released(&session) > 0, "{share}/4 of the lists");
         assert_same_picture(&session, &whole, "fewer lists");
         assert_eq!(edited(&mut session, "materials.tiles.diffuse", "0.2"), Class::Reshade);
-        assert_eq!(edited(&mut session, "materials.tiles.shininess", "9"), Class::Retrace);
+        assert_eq!(edited(&mut session, "materials.tiles.shininess", "9"), Class::Regrow);
     }
 }
 

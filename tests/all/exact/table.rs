@@ -119,8 +119,7 @@ const BECOMES_MIRROR: &[(&str, Class)] = &[
 const EXPONENT: &[(&str, Class)] =
     &[("0", Refold), ("1", Refold), ("7.5", Refold), ("1e6", Refold), ("@", Refold)];
 /// Where colours fall: the kept trees say where surfaces are.
-const CELL: &[(&str, Class)] =
-    &[("0.25", Refold), ("1", Refold), ("1.5", Refold), ("@", Refold)];
+const CELL: &[(&str, Class)] = &[("0.25", Refold), ("1", Refold), ("1.5", Refold), ("@", Refold)];
 const VECTOR: &[(&str, Class)] = &[("[0.1, -0.3, 0.8]", Retrace), ("@", Retrace)];
 const TURN: &[(&str, Class)] = &[("[0, 0, 15]", Retrace), ("@", Retrace)];
 const SCALE: &[(&str, Class)] =

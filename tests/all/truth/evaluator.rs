@@ -248,7 +248,11 @@ fn every_shipped_scene_is_what_the_formulas_say_as_traced_and_after_edits() {
         let mut session = open(shipped(&name));
         let originals = path::parameters(session.scene());
         let trees = pixels(&session);
-        assert_eq!(check(&session, &trees, &name), 0, "{name}: a fresh trace stores no dead branch");
+        assert_eq!(
+            check(&session, &trees, &name),
+            0,
+            "{name}: a fresh trace stores no dead branch"
+        );
         for round in 0..6 {
             // A raised path factor may ask for rays: then lowered ones, which never do.
             let raised = edited(session.scene(), &originals, &mut dice, 1.1);

@@ -94,7 +94,8 @@ fn same_but_for_units(session: &Session, larger: &Session, by: f64) -> bool {
         blocks.iter().flat_map(|b| b.0.as_flattened()).map(|c| c.to_bits()).collect()
     };
     let mut forest = session.forest().clone();
-    for node in forest.tiles.iter_mut().flatten().flat_map(|trees| &mut Arc::make_mut(trees).nodes) {
+    for node in forest.tiles.iter_mut().flatten().flat_map(|trees| &mut Arc::make_mut(trees).nodes)
+    {
         node.t *= by;
     }
     session.frame() == larger.frame() && film(session) == film(larger) && forest == *larger.forest()

@@ -50,7 +50,8 @@ pub(super) fn pixels(session: &Session) -> Vec<PixelTrees> {
     let mut list = Vec::new();
     for tile in 0..layout.tiles() {
         let trees = &session.trees(tile, &Progress::default()).expect("trees within the budget");
-        let start = Cursor { trees, materials: &materials, sample: 0, node: 0, light: 0, crossing: 0 };
+        let start =
+            Cursor { trees, materials: &materials, sample: 0, node: 0, light: 0, crossing: 0 };
         let mut cursor = start;
         for block in 0..TILE_BLOCKS {
             for lane in 0..LANES {

@@ -42,7 +42,9 @@ block = { box = { min = [1, 0, -1], max = [2, 1, 0] }, material = "glass" }
 fn words(cost: Cost) -> (String, Option<f64>) {
     let percent = |pixels: Pixels| {
         let percent = (pixels.count as f64 * 100.0 / pixels.of as f64).round();
-        assert!(pixels.count == 0 || percent >= 1.0 && (percent < 100.0 || pixels.count == pixels.of));
+        assert!(
+            pixels.count == 0 || percent >= 1.0 && (percent < 100.0 || pixels.count == pixels.of)
+        );
         format!("{percent} %")
     };
     match cost {
