@@ -140,6 +140,8 @@ pub struct Session {
     canvas: Canvas,
     /// Per light the key of its records in the trees.
     keys: Vec<u16>,
+    /// Keys of all records in the trees: also of lights that are gone.
+    keys_in_trees: Vec<u16>,
     /// Which factors stand for the scene's solids and lights in the matrix.
     names: Names,
     /// Per material the index of refraction with which its nodes stand in the trees: another one than
@@ -192,6 +194,7 @@ impl Session {
         let mut session = Session {
             canvas: Canvas::new(scene.picture.size),
             keys: (0..).take(scene.lights.len()).collect(),
+            keys_in_trees: (0..).take(scene.lights.len()).collect(),
             names: Names::new(geometry.materials(), scene.lights.len()),
             iors: scene.materials.iter().map(|m| m.ior).collect(),
             scene,

@@ -89,7 +89,7 @@ impl Session {
     /// Keys of the new scene's lights: a light that is new or elsewhere has a new one.
     fn keys_after(&mut self, change: &Change) -> Vec<u16> {
         let old = &self.keys;
-        let mut free = (0..=u16::MAX).filter(|key| !old.contains(key));
+        let mut free = (0..=u16::MAX).filter(|key| !self.keys_in_trees.contains(key));
         let key = |before: &Option<u16>| match before {
             Some(before) => old[*before as usize],
             None => free.next().expect("fewer lights than keys"),
@@ -135,6 +135,9 @@ impl Session {
         self.merge(patches);
         (self.scene, self.geometry) = (regrow.scene.clone(), regrow.geometry.clone());
         (self.keys, self.names) = (regrow.keys.clone(), regrow.names.clone());
+        if change.shadows {
+            self.keys_in_trees = self.keys.clone();
+        }
         self.iors = regrow.iors_after.clone();
         self.program = TermProgram::new(&self.transport.trie);
         self.release_to_budget();

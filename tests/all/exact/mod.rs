@@ -7,6 +7,7 @@ mod floors;
 mod histories;
 mod memory;
 pub(crate) mod random;
+mod regrows;
 mod stopped;
 mod table;
 mod threads;
