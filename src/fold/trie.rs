@@ -17,6 +17,10 @@ impl Marks {
     /// An opaque material that stopped a shadow ray of the parent's node.
     pub const WITNESS: Marks = Marks(4);
 
+    /// A branch that ended here because its geometric weight was too low: no parameter but the
+    /// cut-off brings it to life.
+    pub const FAINT: Marks = Marks(8);
+
     /// Both sets of marks.
     pub const fn and(self, other: Marks) -> Marks {
         Marks(self.0 | other.0)

@@ -6,13 +6,15 @@ use fearless_simd::{Level, Simd, dispatch};
 use glam::DVec3;
 
 use super::camera::View;
+use super::lobe::{self, Lit, Lobe};
 use super::sampling;
-use super::tree::{BLOCKED, Branch, Ends, LightHit, Node};
+use super::tree::{BLOCKED, Branch, Ends, LightHit, NO_FRESNEL, Node, weights};
 use crate::film::layout::{LANES, Layout, Place};
 use crate::geometry::{Geometry, Hit, Interaction, Leaving, Ray, Stack};
 use crate::progress::{Cancelled, Progress};
+use crate::scene::model::Model;
 use crate::scene::factor::{End, Factor, FactorValues, Kind, PathWeight};
-use crate::scene::{LightPlace, Scene};
+use crate::scene::{LightPlace, Material, Scene};
 
 /// What receives the trees: storage, or nothing, so that tracing with and without keeping is the
 /// same code. Nodes arrive in preorder, a node's lights right after it.
@@ -119,6 +121,9 @@ pub struct Grower<'a> {
     /// Directions are of length 1.
     lights: Vec<LightPlace>,
     iors: Vec<f64>,
+    models: Vec<Model>,
+    /// Per material, whether Fresnel weighs its branches.
+    weighing: Vec<bool>,
     view: View,
     layout: Layout,
     samples: u32,
@@ -147,6 +152,8 @@ struct Pending {
     ray: Ray,
     leaving: Option<Leaving>,
     path: PathWeight,
+    /// Product of Fresnel's reflectances on the path.
+    geometric: f32,
     parent: Option<(u32, Side)>,
     medium: u32,
 }
@@ -161,6 +168,8 @@ impl<'a> Grower<'a> {
             values,
             lights: scene.lights.iter().map(|l| with_unit_direction(&l.place)).collect(),
             iors: scene.materials.iter().map(|m| m.ior).collect(),
+            models: scene.materials.iter().map(|m| m.model).collect(),
+            weighing: scene.materials.iter().map(Material::weighs_branches).collect(),
             view: View::new(&scene.camera, scene.picture.size),
             layout: Layout::new(scene.picture.size),
             samples: scene.trace.samples,
@@ -233,6 +242,7 @@ impl<'a> Grower<'a> {
             ray,
             leaving: None,
             path: PathWeight::EYE,
+            geometric: 1.0,
             parent: None,
             medium: Media::OUTSIDE,
         };
@@ -268,44 +278,80 @@ impl<'a> Grower<'a> {
         sink: &mut K,
     ) -> Result<(), Stop> {
         let at = self.geometry.interaction(&from.ray, hit);
-        let surface = Surface::new(&at, from.ray.direction);
+        let mut surface = Surface::new(&at, from.ray.direction);
         let media = self.cross(&mut worker.media, from.medium, &at, &surface);
-        let refracted = surface.refract(media.eta);
+        surface.contrast = media.contrast;
+        surface.refracted = surface.refract(media.eta);
+        let refracted = surface.refracted;
         let reflect_kind = match refracted {
             Some(_) => Kind::Reflect,
             None => Kind::TotalReflect,
         };
-        let follow = |kind| self.values.follow(from.path, Factor::new(kind, at.material, 0));
-        let reflected = follow(reflect_kind);
-        let transmitted = refracted.map(|_| follow(Kind::Transmit));
+        let fresnel = if self.weighing[at.material as usize] {
+            surface.reflectance() as f32
+        } else {
+            NO_FRESNEL
+        };
+        let [mirrored, passed] = weights(fresnel).map(|w| w * from.geometric);
+        let follow = |kind, geometric| self.follow(from, (kind, at.material), geometric);
+        let reflected = follow(reflect_kind, mirrored);
+        let transmitted = refracted.map(|_| follow(Kind::Transmit, passed));
         let ends = Ends::new(
             branch(reflected),
             transmitted.map_or(Branch::Absent, branch),
             refracted.is_none(),
         );
         let (material, slot) = (at.material, at.slot);
-        let node = Node { t: hit.t, primitive: hit.primitive, material, lights: 0, slot, ends };
+        let node =
+            Node { t: hit.t, primitive: hit.primitive, material, lights: 0, slot, ends, fresnel };
         let name = sink.node(node);
         for (light, place) in self.lights.iter().enumerate() {
             self.light(simd, worker, &at, &surface, (light as u16, place), sink)?;
         }
-        let mut queue = |direction, path, side, medium| {
+        let mut queue = |direction, (path, geometric), side, medium| {
             let (ray, leaving) = self.geometry.spawn(&at, direction);
             let parent = Some((name, side));
-            worker.pending.push(Pending { ray, leaving: Some(leaving), path, parent, medium });
+            let leaving = Some(leaving);
+            worker.pending.push(Pending { ray, leaving, path, geometric, parent, medium });
         };
         if let (Some(direction), Some(Ok(path))) = (refracted, transmitted) {
             worker.rays.transmitted += 1;
-            queue(direction, path, Side::Transmitted, media.behind);
+            queue(direction, (path, passed), Side::Transmitted, media.behind);
         }
         if let Ok(path) = reflected {
             worker.rays.reflected += 1;
-            queue(surface.reflect(), path, Side::Reflected, from.medium);
+            queue(surface.reflect(), (path, mirrored), Side::Reflected, from.medium);
         }
         Ok(())
     }
 
-    /// Sends a shadow ray to a light in front of the geometric surface.
+    /// The rule of liveness for a branch of this geometric weight.
+    #[inline(always)]
+    fn follow(
+        &self,
+        from: &Pending,
+        (kind, material): (Kind, u16),
+        geometric: f32,
+    ) -> Result<PathWeight, End> {
+        if self.values.faint(geometric) {
+            return Err(End::Faint);
+        }
+        self.values.follow(from.path, Factor::new(kind, material, 0))
+    }
+
+    /// What a light that shines onto the surface from behind shows of itself: none without Hall.
+    #[inline(always)]
+    fn behind(&self, material: u16, surface: &Surface, to_light: DVec3) -> Lobe {
+        match (self.models[material as usize], surface.refracted) {
+            (Model::Hall, Some(through)) if surface.geometric.dot(to_light) < 0.0 => {
+                lobe::transmitted(through, to_light, surface.reflectance())
+            }
+            _ => Lobe::NONE,
+        }
+    }
+
+    /// Sends a shadow ray to a light in front of the geometric surface, and to one that shines
+    /// through it. Where nothing passes, the surface's own material is what stops the latter.
     #[inline(always)]
     fn light<S: Simd, K: Sink>(
         &self,
@@ -320,7 +366,14 @@ impl<'a> Grower<'a> {
             LightPlace::Point(p) => (*p - at.point).normalize_or_zero(),
             LightPlace::Direction(d) => -*d,
         };
-        if surface.geometric.dot(to_light) <= 0.0 {
+        let front = surface.geometric.dot(to_light) > 0.0;
+        let behind = if front { Lobe::NONE } else { self.behind(at.material, surface, to_light) };
+        if !front && behind == Lobe::NONE {
+            return Ok(());
+        }
+        let stopped = LightHit { light, crossed: BLOCKED, n_dot_l: 0.0, angle: 1.0, weight: 0.0 };
+        if !front && self.opaque[at.material as usize] {
+            sink.light(stopped, &[at.material]);
             return Ok(());
         }
         worker.rays.shadow += 1;
@@ -334,24 +387,23 @@ impl<'a> Grower<'a> {
         let witness =
             self.geometry.occluded(simd, stack, &ray, t_max, leaving, &self.opaque, crossed);
         if let Some(material) = witness {
-            let hit = LightHit { light, crossed: BLOCKED, n_dot_l: 0.0, one_minus_r_dot_v: 1.0 };
-            sink.light(hit, &[material]);
+            sink.light(stopped, &[material]);
             return Ok(());
         }
         if crossed.len() > MOST_CROSSED {
             return Err(Stop::Surfaces);
         }
         crossed.sort_unstable();
-        let n_dot_l = surface.normal.dot(to_light);
-        let mirrored = surface.normal * (2.0 * n_dot_l) - to_light;
-        let one_minus_r_dot_v = (mirrored - surface.to_eye).length_squared() / 2.0;
-        let hit = LightHit {
-            light,
-            crossed: crossed.len() as u16,
-            n_dot_l: n_dot_l as f32,
-            one_minus_r_dot_v: one_minus_r_dot_v as f32,
+        let (n_dot_l, Lobe { angle, weight }) = if front {
+            let lit = Lit { normal: surface.normal, to_eye: surface.to_eye, to_light };
+            let model = self.models[at.material as usize];
+            let lobe = lobe::highlight(model, &lit, surface.contrast);
+            (surface.normal.dot(to_light) as f32, lobe)
+        } else {
+            (0.0, behind)
         };
-        sink.light(hit, crossed);
+        let crossings = crossed.len() as u16;
+        sink.light(LightHit { light, crossed: crossings, n_dot_l, angle, weight }, crossed);
         Ok(())
     }
 
@@ -364,19 +416,20 @@ impl<'a> Grower<'a> {
         at: &Interaction,
         surface: &Surface,
     ) -> Crossing {
-        if at.thin {
-            return Crossing { eta: 1.0, behind: front };
-        }
         let ior = |solid: Option<(u32, u16)>| solid.map_or(1.0, |(_, m)| self.iors[m as usize]);
         let own = Some((at.solid, at.material));
-        if surface.entering {
+        let entering = ior(media.top(front)) / ior(own);
+        if at.thin {
+            Crossing { eta: 1.0, contrast: entering, behind: front }
+        } else if surface.entering {
             let behind = media.push(front, at.solid, at.material);
-            Crossing { eta: ior(media.top(front)) / ior(own), behind }
+            Crossing { eta: entering, contrast: entering, behind }
         } else {
             let behind = media.without(front, at.solid);
             // A ray that leaves a solid which it never entered started inside it.
             let inside = if behind == front { own } else { media.top(front) };
-            Crossing { eta: ior(inside) / ior(media.top(behind)), behind }
+            let eta = ior(inside) / ior(media.top(behind));
+            Crossing { eta, contrast: eta, behind }
         }
     }
 }
@@ -395,12 +448,18 @@ fn branch(followed: Result<PathWeight, End>) -> Branch {
         Err(End::Zero) => Branch::Zero,
         Err(End::Weight) => Branch::Weight,
         Err(End::Depth) => Branch::Depth,
+        Err(End::Faint) => Branch::Faint,
     }
 }
 
-/// Ratio of the indices in front of and behind a surface, and the solids behind it.
+/// What meets at a surface.
 struct Crossing {
+    /// Ratio of the indices in front and behind, by which a ray bends.
     eta: f64,
+    /// The same for Fresnel's reflectance: differs for a thin surface, which mirrors like the
+    /// material that it is of and bends nothing.
+    contrast: f64,
+    /// The solids behind.
     behind: u32,
 }
 
@@ -412,6 +471,10 @@ struct Surface {
     to_eye: DVec3,
     /// Whether the ray comes from outside.
     entering: bool,
+    /// [`Crossing::contrast`], once it is known.
+    contrast: f64,
+    /// Direction of the refracted ray, once it is known.
+    refracted: Option<DVec3>,
 }
 
 impl Surface {
@@ -423,7 +486,16 @@ impl Surface {
         let geometric = at.geometric_normal * side;
         let smooth = at.shading_normal * side;
         let normal = if smooth.dot(to_eye) > 0.0 { smooth } else { geometric };
-        Surface { normal, geometric, to_eye, entering }
+        Surface { normal, geometric, to_eye, entering, contrast: 1.0, refracted: None }
+    }
+
+    /// Fresnel's reflectance of the ray that met it.
+    #[inline(always)]
+    fn reflectance(&self) -> f64 {
+        match self.refracted {
+            Some(_) => lobe::fresnel(self.normal.dot(self.to_eye).min(1.0), self.contrast),
+            None => 1.0,
+        }
     }
 
     /// Direction of the mirror ray, always above the geometric surface.

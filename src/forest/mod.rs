@@ -2,6 +2,7 @@
 
 pub mod camera;
 pub mod grow;
+pub mod lobe;
 pub mod sampling;
 pub mod tree;
 

@@ -4,6 +4,7 @@
 
 use std::sync::Arc;
 
+use super::model::Peak;
 use super::{
     Background, Camera, Light, LightPlace, Material, Paint, Picture, Placement, Scene, Shape,
     Solid, Trace,
@@ -17,7 +18,7 @@ pub struct Change {
     pub moves_rays: Option<&'static str>,
     /// Whether what moves rays is in the compiled geometry: solids, and where their colours fall.
     pub geometry: bool,
-    /// Materials whose highlight has another exponent: their coefficients are folded again.
+    /// Materials whose highlight has another peak: their coefficients are folded again.
     pub refold: Vec<u16>,
     /// A factor may have another value, or the rule of liveness another limit.
     pub terms: bool,
@@ -37,6 +38,10 @@ impl Change {
         let Background { color } = background;
         change.term(*color != new.background.color);
         change.trace(trace, &new.trace);
+        let weighs = |s: &Scene| s.materials.iter().any(Material::weighs_branches);
+        let other_cutoff = trace.cutoff != new.trace.cutoff;
+        // What is cut off by geometry is not in the terms.
+        change.ray(other_cutoff && (weighs(old) || weighs(new)), "trace.cutoff");
         change.ray(lights.len() != new.lights.len(), "the number of lights");
         change.form(materials.len() != new.materials.len(), "the number of materials");
         change.form(solids.len() != new.solids.len(), "the number of solids");
@@ -108,14 +113,17 @@ impl Change {
             kloc,
             ambient,
             diffuse,
+            model,
             specular,
-            shininess,
+            shininess: _,
+            roughness: _,
             metallic,
             emission,
             reflect,
             transmit,
             filter,
             ior,
+            fresnel,
         } = old;
         self.paint(paint, &new.paint);
         let local = *kloc != new.kloc || *ambient != new.ambient || *diffuse != new.diffuse;
@@ -123,10 +131,13 @@ impl Change {
         self.term(local || gloss || *emission != new.emission);
         let path = *reflect != new.reflect || *transmit != new.transmit || *filter != new.filter;
         self.term(path);
-        if *shininess != new.shininess {
+        // `shininess` and `roughness`: only the one that the model heeds shapes its peak.
+        if *model == new.model && Peak::of(old) != Peak::of(new) {
             self.refold.push(index as u16);
         }
+        self.ray(*model != new.model, "model");
         self.ray(*ior != new.ior, "ior");
+        self.ray(*fresnel != new.fresnel, "fresnel");
     }
 
     fn paint(&mut self, old: &Paint, new: &Paint) {

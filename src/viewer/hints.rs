@@ -28,8 +28,17 @@ pub(super) fn about(key: &str) -> &'static str {
         }
         "ambient" => "Share of the ambient light that the surface shows",
         "diffuse" => "Matte light: the surface's colour under each light (Lambert)",
-        "specular" => "Strength of the highlights (Phong)",
-        "shininess" => "Phong's exponent: higher makes highlights smaller",
+        "model" => "How highlights spread: Phong, Blinn, Cook-Torrance or Hall",
+        "specular" => "Strength of the highlights",
+        "shininess" => {
+            "Exponent of Phong, Blinn and Hall: higher makes highlights smaller (Blinn's and \
+             Hall's are as wide as Phong's at four times the exponent)"
+        }
+        "roughness" => "Slope of the facets of Cook-Torrance: higher makes highlights larger",
+        "fresnel" => {
+            "Whether reflect and transmit depend on the angle and ior as in nature: more is \
+             mirrored at grazing angles"
+        }
         "metallic" => "0: white highlights; 1: highlights in the colour of the surface",
         "emission" => "Light that the surface gives off by itself",
         "reflect" => "Share of the mirror image",

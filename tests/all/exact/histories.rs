@@ -57,6 +57,7 @@ fn value(parameter: &Parameter, scene: &Scene, random: &mut Random) -> Option<St
             random.pick(&["0", "0.0005", "0.00392", "0.004", "0.05", "0.4", "1"]).to_owned()
         }
         (Kind::Number, "ior") => random.pick(&["1", "1.33", "1.7", "0.8"]).to_owned(),
+        (Kind::Number, "roughness") => random.pick(&["0.02", "0.1", "0.3", "1"]).to_owned(),
         (Kind::Number, _) => near(&parameter.value, random.unit() * 0.2)?,
         (Kind::Whole, "samples") => (1 + random.below(4)).to_string(),
         (Kind::Whole, "depth") => random.below(13).to_string(),
@@ -69,6 +70,7 @@ fn value(parameter: &Parameter, scene: &Scene, random: &mut Random) -> Option<St
             format!("[{}]", numbers.join(", "))
         }
         (Kind::Scale, _) => format!("{:.2}", 0.8 + 0.4 * random.unit()),
+        (Kind::Choice(names), _) => random.pick(names).to_owned(),
         (Kind::Material, _) => scene.materials[random.below(scene.materials.len())].name.clone(),
         (Kind::Pair, "size") => random.pick(&["[33, 18]", "[20, 21]", "[40, 9]"]).to_owned(),
         _ => return None,
