@@ -12,8 +12,8 @@ use super::tree::{BLOCKED, Branch, Ends, LightHit, NO_FRESNEL, Node, weights};
 use crate::film::layout::{LANES, Layout, Place};
 use crate::geometry::{Geometry, Hit, Interaction, Leaving, Ray, Stack};
 use crate::progress::{Cancelled, Progress};
-use crate::scene::model::Model;
 use crate::scene::factor::{End, Factor, FactorValues, Kind, PathWeight};
+use crate::scene::model::Model;
 use crate::scene::{LightPlace, Material, Scene};
 
 /// What receives the trees: storage, or nothing, so that tracing with and without keeping is the

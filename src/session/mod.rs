@@ -25,6 +25,7 @@ use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::scene::change::Change;
 use crate::scene::factor::FactorValues;
+use crate::scene::model::Peak;
 use crate::shade::cpu::{self, Tiles};
 use crate::shade::terms::{TermProgram, TermValues};
 use canvas::Canvas;
@@ -253,17 +254,17 @@ impl Session {
         class_without_rays(change)
     }
 
-    /// Folds the highlights of some materials again and marks the tiles that show them.
+    /// Folds the highlights of some materials again and marks the tiles that they change.
     fn refold(&mut self, materials: &[u16], marks: &mut [bool]) {
-        let mut exponents = vec![None; self.scene.materials.len()];
+        let mut peaks = vec![None; self.scene.materials.len()];
         for &m in materials {
-            exponents[m as usize] = Some(self.scene.materials[m as usize].shininess);
+            peaks[m as usize] = Some(Peak::of(&self.scene.materials[m as usize]));
         }
         let weight = 1.0 / self.transport.samples as f32;
         let tiles = self.transport.tiles.par_iter_mut().zip(marks);
         self.pool.install(|| {
             tiles.for_each_init(HighlightPower::default, |power, (tile, mark)| {
-                *mark |= power.refold(tile, &exponents, weight);
+                *mark |= power.refold(tile, &peaks, weight);
             });
         });
     }

@@ -17,6 +17,7 @@ use crate::forest::tree::TileTrees;
 use crate::geometry::Geometry;
 use crate::progress::{Cancelled, Progress};
 use crate::scene::Scene;
+use crate::scene::model::Peak;
 
 /// What a trace may keep.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -205,7 +206,7 @@ struct Job<'a> {
     grower: Grower<'a>,
     layout: Layout,
     samples: u32,
-    shininess: Vec<Option<f32>>,
+    peaks: Vec<Option<Peak>>,
     progress: &'a Progress,
     next: AtomicUsize,
     slots: Vec<Mutex<Slot>>,
@@ -302,7 +303,7 @@ impl<'a> Job<'a> {
             grower: Grower::new(scene, geometry),
             layout,
             samples: scene.trace.samples,
-            shininess: scene.materials.iter().map(|m| Some(m.shininess)).collect(),
+            peaks: scene.materials.iter().map(|m| Some(Peak::of(m))).collect(),
             progress,
             next: AtomicUsize::new(0),
             slots: (0..layout.tiles()).map(slot).collect(),
@@ -374,7 +375,7 @@ impl<'a> Job<'a> {
     /// The tile's part of the matrix, in ids of the picture's trie.
     fn finish_tile(&self, folder: &mut Folder) -> TransportTile {
         let weight = 1.0 / self.samples as f32;
-        let folded = folder.finish_tile(weight, &self.shininess);
+        let folded = folder.finish_tile(weight, &self.peaks);
         let mut tile = folded.tile;
         if self.kept == Kept::Matrix {
             tile.highlights = None;

@@ -10,6 +10,7 @@ pub(crate) mod random;
 mod stopped;
 mod table;
 mod threads;
+mod timing;
 
 use std::path::{Path, PathBuf};
 

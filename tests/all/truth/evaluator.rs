@@ -3,13 +3,15 @@
 //!
 //! `I = kloc·I_local + reflect·I_reflected + transmit·filter·I_refracted`, with
 //! `I_local = emission + ambient·O·Ia + Σ lights·Π(transmit·filter)·[diffuse·O·max(0, N·L) +
-//! specular·tint·max(0, R·V)^n]`.
+//! specular·tint·highlight]`, where Fresnel, if asked for, weighs what is reflected and refracted,
+//! and Hall's model also shows lights behind a surface, with transmit·filter for the tint.
 
 use glam::DVec3;
 
 use rayforest::color::Rgb;
 use rayforest::forest::Forest;
 use rayforest::progress::Progress;
+use rayforest::scene::model::Model;
 use rayforest::scene::path::{self, Parameter};
 use rayforest::scene::{Material, Paint, Scene};
 use rayforest::session::{Class, Session};
@@ -64,13 +66,15 @@ struct Evaluator<'a> {
 #[derive(Clone, Copy)]
 struct Path {
     weight: DVec3,
+    /// Product of Fresnel's reflectances: the same rule, but no parameter counts.
+    geometric: f64,
     depth: u32,
 }
 
 impl Evaluator<'_> {
     fn sample(&mut self, tree: Option<&Tree>) -> DVec3 {
         match tree {
-            Some(tree) => self.light(tree, Path { weight: DVec3::ONE, depth: 0 }),
+            Some(tree) => self.light(tree, Path { weight: DVec3::ONE, geometric: 1.0, depth: 0 }),
             None => rgb(self.scene.background.color),
         }
     }
@@ -80,11 +84,15 @@ impl Evaluator<'_> {
         let m = &scene.materials[tree.material];
         let (reflect, transmit) = (rgb(m.reflect), rgb(m.transmit));
         let mirror = if tree.total { (reflect + transmit).min(DVec3::ONE) } else { reflect };
+        let f = tree.fresnel;
+        let weighed = m.fresnel || m.model == Model::Hall;
+        assert_eq!(f.is_some(), weighed, "reflectance where the material asks for it");
+        let passed = transmit * rgb(m.filter);
+        let towards = |by: f64| Path { geometric: path.geometric * by, ..path };
+        let (through_mirror, through) = (f.unwrap_or(1.0), f.map_or(1.0, |f| 1.0 - f));
         rgb(m.kloc) * local(scene, tree, m)
-            + mirror * self.limb(&tree.reflected, mirror, path)
-            + transmit
-                * rgb(m.filter)
-                * self.limb(&tree.transmitted, transmit * rgb(m.filter), path)
+            + through_mirror * mirror * self.limb(&tree.reflected, mirror, towards(through_mirror))
+            + through * passed * self.limb(&tree.transmitted, passed, towards(through))
     }
 
     /// What comes back along a branch: nothing if it is dead under the present scene.
@@ -112,10 +120,15 @@ impl Evaluator<'_> {
         }
         let weight = path.weight * factor.min(DVec3::ONE);
         let cutoff = f64::from(self.scene.trace.cutoff);
-        if cutoff > 0.0 {
-            self.margin = self.margin.min((weight.max_element() / cutoff - 1.0).abs());
+        if path.geometric < cutoff.max(2f64.powi(-60)) {
+            return None;
         }
-        (weight.max_element() >= cutoff).then_some(Path { weight, depth: path.depth + 1 })
+        if cutoff > 0.0 {
+            let margin = |weight: f64| (weight / cutoff - 1.0).abs();
+            self.margin = self.margin.min(margin(weight.max_element()));
+            self.margin = self.margin.min(margin(path.geometric));
+        }
+        (weight.max_element() >= cutoff).then_some(Path { weight, depth: path.depth + 1, ..path })
     }
 }
 
@@ -133,19 +146,26 @@ fn local(scene: &Scene, tree: &Tree, m: &Material) -> DVec3 {
 fn lamp(scene: &Scene, lit: &Lit, m: &Material, o: DVec3) -> DVec3 {
     let light = &scene.lights[lit.light];
     let Some(crossed) = &lit.crossed else { return DVec3::ZERO };
-    if !light.on || lit.n_dot_l <= 0.0 {
+    let behind = lit.n_dot_l <= 0.0 && lit.weight > 0.0;
+    if !light.on || (lit.n_dot_l <= 0.0 && !behind) {
         return DVec3::ZERO;
     }
     let through = crossed.iter().map(|&m| &scene.materials[m]);
     let shadow: DVec3 = through.map(|m| rgb(m.transmit) * rgb(m.filter)).product();
     let metallic = f64::from(m.metallic);
     let tint = DVec3::splat(1.0 - metallic) + o * metallic;
-    let cosine = (1.0 - lit.one_minus_r_dot_v).max(0.0);
-    let highlight = if cosine > 0.0 { cosine.powf(m.shininess.into()) } else { 0.0 };
+    let spread = match m.model {
+        Model::CookTorrance => {
+            let slope = f64::from(m.roughness).powi(-2);
+            slope * (-lit.angle * slope).exp()
+        }
+        _ => (1.0 - lit.angle).powf(m.shininess.into()),
+    };
+    let tint = if behind { rgb(m.transmit) * rgb(m.filter) } else { tint };
     rgb(light.color)
         * rgb(light.intensity)
         * shadow
-        * (rgb(m.diffuse) * o * lit.n_dot_l + rgb(m.specular) * tint * highlight)
+        * (rgb(m.diffuse) * o * lit.n_dot_l.max(0.0) + rgb(m.specular) * tint * lit.weight * spread)
 }
 
 fn rgb(color: Rgb) -> DVec3 {

@@ -10,6 +10,8 @@ pub(super) struct Tree {
     pub(super) primitive: u32,
     pub(super) material: usize,
     pub(super) slot: usize,
+    /// Fresnel's reflectance, if it weighs the branches.
+    pub(super) fresnel: Option<f64>,
     /// Whether the mirror ray is that of total reflection.
     pub(super) total: bool,
     pub(super) lights: Vec<Lit>,
@@ -21,7 +23,10 @@ pub(super) struct Tree {
 pub(super) struct Lit {
     pub(super) light: usize,
     pub(super) n_dot_l: f64,
-    pub(super) one_minus_r_dot_v: f64,
+    /// 1 − cosine, or tan² α of Cook-Torrance's facets.
+    pub(super) angle: f64,
+    /// What multiplies the highlight; 0 if there is none.
+    pub(super) weight: f64,
     /// The materials that the shadow ray crossed; `None`: something opaque stood in its way.
     pub(super) crossed: Option<Vec<usize>>,
 }
@@ -30,7 +35,7 @@ pub(super) struct Lit {
 pub(super) enum Limb {
     Grown(Box<Tree>),
     Missed,
-    /// Not followed: its factor is zero, or its weight, or the depth limit, forbade it.
+    /// Not followed: its factor is zero, or a weight, or the depth limit, forbade it.
     Cut(Branch),
     Absent,
 }
@@ -86,6 +91,7 @@ impl Cursor<'_> {
             primitive: node.primitive,
             material: node.material.into(),
             slot: node.slot.into(),
+            fresnel: (node.fresnel >= 0.0).then_some(node.fresnel.into()),
             total: node.ends.total(),
             lights,
             reflected,
@@ -103,7 +109,8 @@ impl Cursor<'_> {
         Lit {
             light: hit.light.into(),
             n_dot_l: hit.n_dot_l.into(),
-            one_minus_r_dot_v: hit.one_minus_r_dot_v.into(),
+            angle: hit.angle.into(),
+            weight: hit.weight.into(),
             crossed: (!blocked).then(|| materials.iter().map(|&m| m.into()).collect()),
         }
     }
@@ -113,7 +120,7 @@ impl Cursor<'_> {
             Branch::Grown => Limb::Grown(Box::new(self.tree())),
             Branch::Missed => Limb::Missed,
             Branch::Absent => Limb::Absent,
-            Branch::Zero | Branch::Weight | Branch::Depth => Limb::Cut(branch),
+            Branch::Zero | Branch::Weight | Branch::Depth | Branch::Faint => Limb::Cut(branch),
         }
     }
 
