@@ -4,7 +4,7 @@ use fearless_simd::{Level, dispatch};
 
 use super::transport::{HighlightList, HighlightPart, Highlights, TransportTile};
 use crate::film::layout::LANES;
-use crate::math::{exp2_nonpositive, log2_of_cosine};
+use crate::math::{EXP2_FLUSH, exp2_nonpositive, log2_of_cosine};
 use crate::scene::model::{Measure, Peak};
 
 /// Turns kept angles into coefficients.
@@ -20,12 +20,13 @@ impl Default for HighlightPower {
 }
 
 impl HighlightPower {
-    /// Turns every angle into its l, by the measure of its material.
+    /// Turns every angle into its l, by the measure of its material, and notes the peak of every
+    /// list.
     ///
     /// # Panics
     /// If a material with highlights has no peak.
     pub fn take_logarithms(&self, highlights: &mut Highlights, peaks: &[Option<Peak>]) {
-        let Highlights { groups, lists: _, counts: _, logarithms, weights: _ } = highlights;
+        let Highlights { groups, lists, counts, logarithms, weights: _ } = highlights;
         let mut rest = logarithms.as_mut_slice();
         for group in groups {
             let (angles, after) = rest.split_at_mut(group.samples as usize);
@@ -35,6 +36,14 @@ impl HighlightPower {
                 Measure::Cosine => dispatch!(self.level, _simd => of_cosines(angles)),
                 Measure::Tangent => dispatch!(self.level, _simd => of_tangents(angles)),
             }
+        }
+        let (mut counts, mut logarithms) = (counts.as_slice(), logarithms.as_slice());
+        for list in lists {
+            let own;
+            (own, counts) = counts.split_at(list.mask.count_ones() as usize);
+            let samples;
+            (samples, logarithms) = logarithms.split_at(samples_of(list, own));
+            list.peak = samples.iter().copied().fold(f32::NEG_INFINITY, f32::max);
         }
     }
 
@@ -51,15 +60,11 @@ impl HighlightPower {
         let powers = &mut self.powers;
         let mut changed = false;
         for part in highlights.parts() {
-            let Some(Peak { exponent, scale, measure: _ }) = peaks[part.material as usize] else {
-                continue;
-            };
-            powers.resize(powers.len().max(part.logarithms.len()), 0.0);
-            let factor = sample_weight * scale;
-            dispatch!(self.level, _simd => {
-                powers_of(&part, exponent, powers);
-                changed |= sum_lists(tile, &part, powers, factor);
-            });
+            if let Some(peak) = &peaks[part.material as usize] {
+                changed |= dispatch!(self.level, _simd => {
+                    fold_part(tile, &part, peak, sample_weight, powers)
+                });
+            }
         }
         changed
     }
@@ -81,49 +86,71 @@ impl HighlightPower {
     }
 }
 
-/// Sums the powers of every list and writes the coefficients to where the list's term is stored.
+/// Sums the powers of every list of a material and writes the coefficients to where the list's term
+/// is stored.
 #[inline(always)]
-fn sum_lists(tile: &mut TransportTile, part: &HighlightPart, powers: &[f32], factor: f32) -> bool {
-    let (mut powers, mut counts) = (powers, part.counts);
+fn fold_part(
+    tile: &mut TransportTile,
+    part: &HighlightPart,
+    peak: &Peak,
+    sample_weight: f32,
+    powers: &mut Vec<f32>,
+) -> bool {
+    let Peak { exponent, scale, measure: _ } = *peak;
+    let HighlightPart { material: _, lists, mut counts, mut logarithms, mut weights } = *part;
+    let factor = sample_weight * scale;
     let mut changed = false;
-    for list in part.lists {
-        let (own, rest) = counts.split_at(list.mask.count_ones() as usize);
-        counts = rest;
-        let sums;
-        (sums, powers) = if list.full == 0 {
-            sums_of_lanes(own, powers)
+    for list in lists {
+        let (lanes, ls, ws);
+        (lanes, counts) = counts.split_at(list.mask.count_ones() as usize);
+        let samples = samples_of(list, lanes);
+        (ls, logarithms) = logarithms.split_at(samples);
+        (ws, weights) = weights.split_at(samples.min(weights.len()));
+        let sums = if exponent * list.peak < EXP2_FLUSH {
+            [0.0; LANES]
         } else {
-            sums_of_rows(list.full.into(), powers)
+            powers.resize(powers.len().max(samples), 0.0);
+            let powers = &mut powers[..samples];
+            powers_of(ls, exponent, powers);
+            weigh(powers, ws);
+            if list.full == 0 { sums_of_lanes(lanes, powers) } else { sums_of_rows(powers) }
         };
         changed |= put(tile, list, sums.map(|sum| sum * factor));
     }
     changed
 }
 
-/// The sums of a full list, and the powers after it.
+/// Samples of a list whose lanes have `counts`.
 #[inline(always)]
-fn sums_of_rows(rows: usize, powers: &[f32]) -> ([f32; LANES], &[f32]) {
-    let (own, rest) = powers.split_at(rows * LANES);
+fn samples_of(list: &HighlightList, counts: &[u16]) -> usize {
+    match list.full {
+        0 => counts.iter().map(|&c| usize::from(c)).sum(),
+        each => usize::from(each) * LANES,
+    }
+}
+
+/// The sums of a full list.
+#[inline(always)]
+fn sums_of_rows(powers: &[f32]) -> [f32; LANES] {
     let mut sums = [0.0; LANES];
-    for row in own.chunks_exact(LANES) {
+    for row in powers.chunks_exact(LANES) {
         for (sum, power) in sums.iter_mut().zip(row) {
             *sum += power;
         }
     }
-    (sums, rest)
+    sums
 }
 
-/// The sums of any other list, packed, and the powers after it.
+/// The sums of any other list, packed.
 #[inline(always)]
-fn sums_of_lanes<'a>(counts: &[u16], powers: &'a [f32]) -> ([f32; LANES], &'a [f32]) {
+fn sums_of_lanes(counts: &[u16], mut powers: &[f32]) -> [f32; LANES] {
     let mut sums = [0.0; LANES];
-    let mut powers = powers;
     for (sum, &count) in sums.iter_mut().zip(counts) {
-        let (own, rest) = powers.split_at(count.into());
+        let own;
+        (own, powers) = powers.split_at(count.into());
         *sum = own.iter().fold(0.0, |sum, power| sum + power);
-        powers = rest;
     }
-    (sums, powers)
+    sums
 }
 
 /// Writes packed coefficients; whether any is another than before.
@@ -156,11 +183,16 @@ fn put(tile: &mut TransportTile, list: &HighlightList, packed: [f32; LANES]) -> 
 }
 
 #[inline(always)]
-fn powers_of(part: &HighlightPart, exponent: f32, powers: &mut [f32]) {
-    for (power, l) in powers.iter_mut().zip(part.logarithms) {
+fn powers_of(logarithms: &[f32], exponent: f32, powers: &mut [f32]) {
+    for (power, l) in powers.iter_mut().zip(logarithms) {
         *power = exp2_nonpositive(exponent * l);
     }
-    for (power, weight) in powers.iter_mut().zip(part.weights) {
+}
+
+/// Does nothing where there are no weights.
+#[inline(always)]
+fn weigh(powers: &mut [f32], weights: &[f32]) {
+    for (power, weight) in powers.iter_mut().zip(weights) {
         *power *= weight;
     }
 }

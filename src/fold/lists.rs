@@ -67,7 +67,8 @@ impl HighlightLists {
         self.found.push(Found {
             material: samples[0].material,
             weighted: samples.iter().any(|s| s.weight != 1.0),
-            list: HighlightList { at, mask, full },
+            // The peak is known when angles are logarithms.
+            list: HighlightList { at, mask, full, peak: 0.0 },
             lane,
             sample,
             samples: samples.len() as u32,

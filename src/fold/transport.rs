@@ -151,7 +151,7 @@ pub struct HighlightPart<'a> {
     pub weights: &'a [f32],
 }
 
-/// The samples behind the coefficients of one highlight term in one block.
+/// The samples behind the coefficients of one highlight term in one block: 12 bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HighlightList {
     /// Index into `planes`, or, with [`HighlightList::SINGLE`] added, of the first of `singles`.
@@ -160,6 +160,8 @@ pub struct HighlightList {
     pub mask: u16,
     /// Samples of every lane, if all 16 lanes have equally many: a *full* list. Otherwise 0.
     pub full: u16,
+    /// The greatest l of its samples: where its power is flushed to 0, all of them are.
+    pub peak: f32,
 }
 
 impl HighlightList {
@@ -275,11 +277,15 @@ impl Highlights {
             assert!(counts.iter().all(|&c| c > 0), "a lane without samples");
             let samples: usize = counts.iter().map(|&c| usize::from(c)).sum();
             assert_eq!(samples, logarithms.len(), "highlight samples");
-            let mut lane = 0;
+            let (mut lane, mut sample) = (0, 0);
             for list in lists {
                 let own = &counts[advance(&mut lane, list.mask.count_ones())];
                 let full = list.full == 0 || own == [list.full; LANES];
                 assert!(full, "a list that is not full");
+                let count = own.iter().map(|&c| u32::from(c)).sum();
+                let logarithms = logarithms[advance(&mut sample, count)].iter().copied();
+                let peak = logarithms.fold(f32::NEG_INFINITY, f32::max);
+                assert_eq!(list.peak, peak, "the peak of a list");
             }
         }
         assert!(logarithms.iter().all(|&l| l <= 0.0), "a cosine above 1");

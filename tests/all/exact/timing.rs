@@ -4,9 +4,9 @@ use rayforest::progress::Progress;
 use rayforest::session::{Options, Session};
 #[test]
 fn timing() {
-    for name in ["whitted", "glass"] {
-        let scene = shipped(name, [1920, 1080], 16);
-        let options = Options { threads: 2, memory: 1 << 30 };
+    for name in ["whitted"] {
+        let scene = shipped(name, [960, 540], 16);
+        let options = Options { threads: 2, memory: 4 << 30 };
         let t = std::time::Instant::now();
         let mut session = Session::open(scene, options, &Progress::default()).unwrap();
         eprintln!(
