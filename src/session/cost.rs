@@ -35,7 +35,7 @@ pub enum Cost {
 /// frontier lives.
 pub fn cost(session: &Session, path: &str) -> Option<Cost> {
     let altered = path::altered(session.scene(), path)?;
-    Some(match Knob::between(session.scene(), &altered) {
+    Some(match knob(session.scene(), &altered) {
         Some(knob) => knob.cost(session),
         None => cost_of(session, &altered),
     })
@@ -45,8 +45,13 @@ pub fn cost(session: &Session, path: &str) -> Option<Cost> {
 /// only the whole picture's frontier can tell.
 pub fn cost_of_preview(session: &Session, path: &str) -> Option<Cost> {
     let altered = path::altered(session.scene(), path)?;
-    let knob = Knob::between(session.scene(), &altered);
-    knob.is_none().then(|| cost_of(session, &altered))
+    knob(session.scene(), &altered).is_none().then(|| cost_of(session, &altered))
+}
+
+/// What may bring a branch to life, unless everything is traced anyway.
+fn knob(scene: &Scene, altered: &Scene) -> Option<Knob> {
+    let moves_rays = Change::between(scene, altered).moves_rays.is_some();
+    Knob::between(scene, altered).filter(|_| !moves_rays)
 }
 
 /// The cost of an edit that brings no branch to life.

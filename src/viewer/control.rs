@@ -332,7 +332,7 @@ fn choice_ui(ui: &mut Ui, row: &Row<'_>, choice: &mut dyn Choice) -> bool {
     let combo = ComboBox::from_id_salt(row.path).selected_text(names[before]);
     let response = combo.width(ui.available_width()).show_ui(ui, |ui| {
         for (i, name) in names.iter().enumerate() {
-            ui.selectable_value(&mut index, i, *name);
+            ui.selectable_value(&mut index, i, *name).on_hover_text(hints::choice(name));
         }
     });
     explained(response.response.accessible_name(row.key), row, None);

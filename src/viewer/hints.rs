@@ -67,6 +67,19 @@ pub(super) fn about(key: &str) -> &'static str {
     }
 }
 
+/// What choosing the thing of this name does.
+pub(super) fn choice(name: &str) -> &'static str {
+    match name {
+        "phong" => "Highlights around the mirrored lights: (R·V)^shininess",
+        "blinn" => "Highlights that stretch at grazing angles: (N·H)^shininess",
+        "cook_torrance" => "Highlights of rough facets: roughness and ior shape them",
+        "hall" => {
+            "Blinn's highlights weighted by Fresnel, lights shining through, Fresnel's mirror"
+        }
+        _ => "",
+    }
+}
+
 /// Whether a triple of numbers is looked at as a colour rather than as three strengths.
 pub(super) fn is_color(key: &str) -> bool {
     matches!(key, "color" | "a" | "b" | "filter" | "emission" | "ambient_light")
@@ -101,6 +114,7 @@ pub(super) fn scale(key: &str, range: Range, value: f64) -> Scale {
 mod tests {
     use super::*;
     use crate::scene::fields::{LENSES, PLACES, SHAPES};
+    use crate::scene::model::Model;
     use crate::scene::path::parameters;
     use crate::scene::{Lens, Light, LightPlace, Material, Paint, Scene, Shape, Solid};
 
@@ -124,6 +138,14 @@ mod tests {
             }
         }
         assert_eq!(about("no such key"), "");
+    }
+
+    #[test]
+    fn every_choice_is_explained() {
+        for name in Model::NAMES {
+            assert!(!choice(name).is_empty(), "{name}");
+        }
+        assert_eq!(choice("no such name"), "");
     }
 
     #[test]

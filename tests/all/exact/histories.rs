@@ -171,7 +171,11 @@ fn same_file(a: &Path, b: &Path) -> bool {
 
 /// Random histories of a shipped scene.
 fn wander(name: &str, size: [u32; 2], samples: u32) {
-    let first = shipped(name, size, samples);
+    wander_from(name, shipped(name, size, samples));
+}
+
+/// Random histories of a scene.
+fn wander_from(name: &str, first: Scene) {
     assert!(largest_tree(&first) < LARGEST_TREE, "{name} could not be edited at all");
     let mut classes = Vec::new();
     for seed in 0..histories() {
@@ -195,6 +199,23 @@ fn wander(name: &str, size: [u32; 2], samples: u32) {
 #[test]
 fn whitted() {
     wander("whitted", [64, 36], 4);
+}
+
+/// Every illumination model, with and without Fresnel.
+#[test]
+fn models() {
+    let mut scene = shipped("whitted", [64, 36], 4);
+    for (path, value) in [
+        ("materials.tiles.model", "blinn"),
+        ("materials.tiles.specular", "0.4"),
+        ("materials.glass.model", "hall"),
+        ("materials.mirror.model", "cook_torrance"),
+        ("materials.mirror.reflect", "0.9"),
+        ("materials.mirror.fresnel", "true"),
+    ] {
+        path::set(&mut scene, path, value).unwrap();
+    }
+    wander_from("models", scene);
 }
 
 #[test]

@@ -212,7 +212,12 @@ impl Dice {
 
 /// A new value for a parameter that an edit without rays may change, `None` for others and for most
 /// of those. Path factors stay within `reach` times what was traced.
-fn new_value(original: &Parameter, dice: &mut Dice, reach: f64) -> Option<String> {
+fn new_value(
+    original: &Parameter,
+    dice: &mut Dice,
+    reach: f64,
+    by_parameters_alone: bool,
+) -> Option<String> {
     let Parameter { path, value, .. } = original;
     let key = path.rsplit('.').next().unwrap_or_default();
     if dice.roll() < 0.6 {
@@ -233,10 +238,14 @@ fn new_value(original: &Parameter, dice: &mut Dice, reach: f64) -> Option<String
             _ => scaled(value, &[0; 3].map(|_| reach * dice.roll())),
         },
         "shininess" => format!("{}", 1000f64.powf(dice.roll())),
+        "roughness" => format!("{}", 0.02f64.powf(dice.roll())),
         "metallic" => format!("{}", dice.roll()),
         "on" => format!("{}", dice.roll() < 0.7),
         "depth" => format!("{}", (value.parse::<f64>().ok()? * (0.5 + 0.5 * dice.roll())).floor()),
-        "cutoff" => format!("{}", value.parse::<f64>().ok()? * (1.0 + 4.0 * dice.roll())),
+        // With Fresnel what is cut off by geometry is not in the terms.
+        "cutoff" if by_parameters_alone => {
+            format!("{}", value.parse::<f64>().ok()? * (1.0 + 4.0 * dice.roll()))
+        }
         _ => return None,
     })
 }
@@ -252,10 +261,32 @@ fn scaled(value: &str, by: &[f64; 3]) -> String {
 /// The scene with some of its parameters changed.
 fn edited(now: &Scene, originals: &[Parameter], dice: &mut Dice, reach: f64) -> Scene {
     let mut scene = now.clone();
+    let alone = !scene.materials.iter().any(Material::weighs_branches);
     for original in originals {
-        if let Some(value) = new_value(original, dice, reach) {
+        if let Some(value) = new_value(original, dice, reach, alone) {
             path::set(&mut scene, &original.path, &value).unwrap_or_else(|error| panic!("{error}"));
         }
+    }
+    scene
+}
+
+/// The name of a scene that is not shipped: whitted's, in other illumination models.
+const MODELS: &str = "models";
+
+/// A shipped scene, or [`MODELS`].
+fn scene(name: &str) -> Scene {
+    if name != MODELS {
+        return shipped(name);
+    }
+    let mut scene = shipped("whitted");
+    for (path, value) in [
+        ("materials.tiles.model", "blinn"),
+        ("materials.tiles.specular", "0.4"),
+        ("materials.glass.model", "hall"),
+        ("materials.mirror.model", "cook_torrance"),
+        ("materials.mirror.fresnel", "true"),
+    ] {
+        path::set(&mut scene, path, value).unwrap_or_else(|error| panic!("{error}"));
     }
     scene
 }
@@ -265,8 +296,9 @@ fn every_shipped_scene_is_what_the_formulas_say_as_traced_and_after_edits() {
     let mut dice = Dice(1);
     let mut dead = 0;
     let mut seen = [0; 3];
-    for name in shipped_names() {
-        let mut session = open(shipped(&name));
+    let names = shipped_names().into_iter().chain([MODELS.to_owned()]);
+    for name in names {
+        let mut session = open(scene(&name));
         let originals = path::parameters(session.scene());
         assert_eq!(check(&session, &name), 0, "{name}: a fresh trace stores no dead branch");
         for round in 0..6 {
