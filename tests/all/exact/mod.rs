@@ -10,7 +10,6 @@ pub(crate) mod random;
 mod stopped;
 mod table;
 mod threads;
-mod timing;
 
 use std::path::{Path, PathBuf};
 
