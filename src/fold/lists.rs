@@ -78,39 +78,101 @@ impl HighlightLists {
     /// The lists by material, those without weights before those with; angles are yet to be turned
     /// into logarithms.
     pub(super) fn group(&mut self) -> Highlights {
-        self.found.sort_by_key(|f| (f.material, f.weighted));
-        let weighted = self.found.iter().filter(|f| f.weighted).map(|f| f.samples).sum::<u32>();
+        let mut pieces: Vec<Piece> = self.found.iter().map(|found| self.piece(found)).collect();
+        pieces.sort_by_key(Piece::key);
+        Highlights::of_pieces(pieces.iter())
+    }
+
+    fn piece(&self, found: &Found) -> Piece<'_> {
+        let lanes = found.lane + found.list.mask.count_ones();
+        let samples = found.sample as usize..(found.sample + found.samples) as usize;
+        Piece {
+            material: found.material,
+            weighted: found.weighted,
+            list: found.list,
+            counts: &self.counts[found.lane as usize..lanes as usize],
+            logarithms: &self.angles[samples.clone()],
+            weights: if found.weighted { &self.weights[samples] } else { &[] },
+        }
+    }
+}
+
+/// One list with its samples.
+pub(super) struct Piece<'a> {
+    material: u16,
+    weighted: bool,
+    pub(super) list: HighlightList,
+    counts: &'a [u16],
+    logarithms: &'a [f32],
+    weights: &'a [f32],
+}
+
+impl Piece<'_> {
+    /// By which pieces are grouped.
+    pub(super) fn key(&self) -> (u16, bool) {
+        (self.material, self.weighted)
+    }
+}
+
+impl Highlights {
+    /// Every list, in order.
+    pub(super) fn pieces(&self) -> Vec<Piece<'_>> {
+        let mut pieces = Vec::with_capacity(self.lists.len());
+        for (group, part) in self.groups.iter().zip(self.parts()) {
+            let (mut counts, mut logarithms, mut weights) =
+                (part.counts, part.logarithms, part.weights);
+            for list in part.lists {
+                let (own_counts, own_logarithms, own_weights);
+                (own_counts, counts) = counts.split_at(list.mask.count_ones() as usize);
+                let samples: usize = own_counts.iter().map(|&c| usize::from(c)).sum();
+                (own_logarithms, logarithms) = logarithms.split_at(samples);
+                (own_weights, weights) = weights.split_at(if group.weighted { samples } else { 0 });
+                pieces.push(Piece {
+                    material: group.material,
+                    weighted: group.weighted,
+                    list: *list,
+                    counts: own_counts,
+                    logarithms: own_logarithms,
+                    weights: own_weights,
+                });
+            }
+        }
+        pieces
+    }
+
+    /// Puts together lists that are sorted by their keys.
+    pub(super) fn of_pieces<'a>(pieces: impl Iterator<Item = &'a Piece<'a>> + Clone) -> Highlights {
+        let sum = |of: &dyn Fn(&Piece) -> usize| pieces.clone().map(of).sum::<usize>();
         let mut highlights = Highlights {
             groups: Vec::new(),
-            lists: Vec::with_capacity(self.found.len()),
-            counts: Vec::with_capacity(self.counts.len()),
-            logarithms: Vec::with_capacity(self.angles.len()),
-            weights: Vec::with_capacity(weighted as usize),
+            lists: Vec::with_capacity(sum(&|_| 1)),
+            counts: Vec::with_capacity(sum(&|p| p.counts.len())),
+            logarithms: Vec::with_capacity(sum(&|p| p.logarithms.len())),
+            weights: Vec::with_capacity(sum(&|p| p.weights.len())),
         };
-        let key = |f: &Found| (f.material, f.weighted);
-        for group in self.found.chunk_by(|a, b| key(a) == key(b)) {
-            let (material, weighted) = key(&group[0]);
-            let (lists, before) = (group.len() as u32, highlights.counts.len());
-            for found in group {
-                self.copy(found, &mut highlights);
-            }
-            let lanes = (highlights.counts.len() - before) as u32;
-            let samples = group.iter().map(|f| f.samples).sum();
-            highlights.groups.push(HighlightGroup { material, weighted, lists, lanes, samples });
+        for piece in pieces {
+            let Piece { material, weighted, list, counts, logarithms, weights } = piece;
+            let group = highlights.group_of(*material, *weighted);
+            group.lists += 1;
+            group.lanes += counts.len() as u32;
+            group.samples += logarithms.len() as u32;
+            highlights.lists.push(*list);
+            highlights.counts.extend_from_slice(counts);
+            highlights.logarithms.extend_from_slice(logarithms);
+            highlights.weights.extend_from_slice(weights);
         }
         highlights.groups.shrink_to_fit();
         highlights
     }
 
-    fn copy(&self, found: &Found, highlights: &mut Highlights) {
-        let lanes = found.list.mask.count_ones();
-        let lanes = found.lane as usize..(found.lane + lanes) as usize;
-        let samples = found.sample as usize..(found.sample + found.samples) as usize;
-        highlights.lists.push(found.list);
-        highlights.counts.extend_from_slice(&self.counts[lanes]);
-        highlights.logarithms.extend_from_slice(&self.angles[samples.clone()]);
-        if found.weighted {
-            highlights.weights.extend_from_slice(&self.weights[samples]);
+    /// The last group, made if the next list is of another.
+    fn group_of(&mut self, material: u16, weighted: bool) -> &mut HighlightGroup {
+        let same = |g: &HighlightGroup| (g.material, g.weighted) == (material, weighted);
+        if !self.groups.last().is_some_and(same) {
+            let empty = HighlightGroup { material, weighted, lists: 0, lanes: 0, samples: 0 };
+            self.groups.push(empty);
         }
+        let last = self.groups.len() - 1;
+        &mut self.groups[last]
     }
 }
