@@ -10,6 +10,7 @@ use super::kept::{Met, Recall, Recalled};
 use super::lobe::{self, Lit, Lobe};
 use super::media::{Crossing, Media};
 use super::sampling;
+use super::surface::Surface;
 use super::tree::{BLOCKED, Branch, Ends, LightHit, NO_FRESNEL, Node, weights};
 use crate::film::layout::{LANES, Layout, Place};
 use crate::geometry::{Geometry, Hit, Interaction, Leaving, Ray, Stack};
@@ -584,67 +585,5 @@ fn branch(followed: Result<PathWeight, End>) -> Branch {
         Err(End::Weight) => Branch::Weight,
         Err(End::Depth) => Branch::Depth,
         Err(End::Faint) => Branch::Faint,
-    }
-}
-
-/// A surface as seen by the ray that met it: both normals on the ray's side.
-struct Surface {
-    normal: DVec3,
-    geometric: DVec3,
-    /// Unit vector back along the ray.
-    to_eye: DVec3,
-    /// Whether the ray comes from outside.
-    entering: bool,
-    /// Ratio of the indices in front and behind, for Fresnel's reflectance, once it is known.
-    contrast: f64,
-    /// Direction of the refracted ray, once it is known.
-    refracted: Option<DVec3>,
-}
-
-impl Surface {
-    #[inline(always)]
-    fn new(at: &Interaction, direction: DVec3) -> Surface {
-        let to_eye = -direction;
-        let entering = at.geometric_normal.dot(to_eye) >= 0.0;
-        let side = if entering { 1.0 } else { -1.0 };
-        let geometric = at.geometric_normal * side;
-        let smooth = at.shading_normal * side;
-        let normal = if smooth.dot(to_eye) > 0.0 { smooth } else { geometric };
-        Surface { normal, geometric, to_eye, entering, contrast: 1.0, refracted: None }
-    }
-
-    /// Fresnel's reflectance of the ray that met it.
-    #[inline(always)]
-    fn reflectance(&self) -> f64 {
-        match self.refracted {
-            Some(_) => lobe::fresnel(self.normal.dot(self.to_eye).min(1.0), self.contrast),
-            None => 1.0,
-        }
-    }
-
-    /// Direction of the mirror ray, always above the geometric surface.
-    #[inline(always)]
-    fn reflect(&self) -> DVec3 {
-        let about = |n: DVec3| n * (2.0 * n.dot(self.to_eye)) - self.to_eye;
-        let mirrored = about(self.normal);
-        let above = mirrored.dot(self.geometric) > 0.0;
-        if above { mirrored } else { about(self.geometric) }.normalize()
-    }
-
-    /// Direction of the refracted ray for `eta` = index in front / index behind, always below the
-    /// geometric surface; `None` in total reflection. Snell's law in vector form (Heckbert 1989).
-    #[inline(always)]
-    fn refract(&self, eta: f64) -> Option<DVec3> {
-        let through = |n: DVec3| {
-            let c = n.dot(self.to_eye);
-            let radicand = 1.0 - eta * eta * (1.0 - c * c);
-            (radicand >= 0.0).then(|| n * (eta * c - radicand.sqrt()) - self.to_eye * eta)
-        };
-        if eta == 1.0 {
-            return Some(-self.to_eye);
-        }
-        let bent = through(self.normal)?;
-        let below = bent.dot(self.geometric) < 0.0;
-        if below { Some(bent.normalize()) } else { through(self.geometric).map(DVec3::normalize) }
     }
 }

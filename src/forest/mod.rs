@@ -6,6 +6,7 @@ pub mod kept;
 pub mod lobe;
 mod media;
 pub mod sampling;
+mod surface;
 pub mod tree;
 
 use std::sync::Arc;

@@ -316,6 +316,8 @@ pub(super) const GLOSSY: &[Row] = &[
         &[("0.4", Reshade), ("0", Reshade), ("[0, 0.8, 0]", Reshade), ("@", Reshade)],
     ),
     row("materials.glass.specular", COLOR),
+    row("materials.brass.ior", &[("1", Regrow), ("2.4", Regrow), ("@", Regrow)]),
+    row("materials.plain.ior", &[("2.4", Nothing), ("@", Nothing)]),
     row("materials.brass.reflect", &[("0.5", Reshade), ("0", Reshade), ("@", Reshade)]),
     // Hall's model shows lights behind the screen as soon as it transmits anything.
     row(
