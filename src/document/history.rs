@@ -140,6 +140,7 @@ impl Visit for Bits {
             Slot::Whole(..)
             | Slot::Pair(..)
             | Slot::Flag(_)
+            | Slot::Choice(_)
             | Slot::Material(_)
             | Slot::Mesh { .. } => {}
         }

@@ -28,6 +28,7 @@ use crate::math::exposure_factor;
 use crate::progress::Progress;
 use crate::scene::change::Change;
 use crate::scene::factor::FactorValues;
+use crate::scene::model::Peak;
 use crate::scene::{Material, Scene};
 use crate::shade::cpu::{self, Tiles};
 use crate::shade::terms::{TermProgram, TermValues};
@@ -359,21 +360,21 @@ impl Session {
         kept.map(|&before| self.names.lights[before as usize]).collect()
     }
 
-    /// Folds the highlights of some materials again and marks the tiles that show them.
+    /// Folds the highlights of some materials again and marks the tiles that they change.
     fn refold(&mut self, scene: &Scene, materials: &[u16], marks: &mut [bool]) {
         if materials.is_empty() {
             return;
         }
-        let mut exponents = vec![None; scene.materials.len()];
+        let mut peaks = vec![None; scene.materials.len()];
         for &m in materials {
-            exponents[m as usize] = Some(scene.materials[m as usize].shininess);
+            peaks[m as usize] = Some(Peak::of(&scene.materials[m as usize]));
         }
         let weight = 1.0 / self.transport.samples as f32;
         let tiles = self.transport.tiles.par_iter_mut().zip(marks);
         self.pool.install(|| {
             tiles.for_each_init(HighlightPower::default, |power, (tile, mark)| {
                 // Without lists its pixels are grown again.
-                *mark |= tile.highlights.is_some() && power.refold(tile, &exponents, weight);
+                *mark |= tile.highlights.is_some() && power.refold(tile, &peaks, weight);
             });
         });
     }

@@ -25,6 +25,7 @@ use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::scene::change::Change;
 use crate::scene::factor::FactorValues;
+use crate::scene::model::Peak;
 use crate::shade::cpu;
 use crate::shade::terms::{TermProgram, TermValues};
 
@@ -292,8 +293,8 @@ impl Regrow {
             folder.block(&mut grown.read(0), covered, samples, &self.names);
             trees.push_grown(grown, grower.keys());
         }
-        let shininess: Vec<_> = self.scene.materials.iter().map(|m| Some(m.shininess)).collect();
-        let folded = folder.finish_tile(1.0 / samples as f32, &shininess);
+        let peaks: Vec<_> = self.scene.materials.iter().map(|m| Some(Peak::of(m))).collect();
+        let folded = folder.finish_tile(1.0 / samples as f32, &peaks);
         let bytes = self.kept.fetch_add(trees.bytes(), Relaxed);
         let fits = trees.is_whole() && bytes + trees.bytes() <= self.budget;
         Ok(Patch {
