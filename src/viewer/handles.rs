@@ -19,6 +19,8 @@ use crate::session::cost::Cost;
 
 /// With more lights than this only the selected one has a handle.
 const MOST: usize = 200;
+/// Below this height of the picture on the screen, in points, handles would only be in the way.
+const LOWEST: f32 = 120.0;
 /// Radius of a handle in points.
 const RADIUS: f32 = 6.0;
 /// Length of the arrow of a direction, in points.
@@ -109,7 +111,7 @@ impl Handles {
     ) -> HandlesOutcome {
         let mut outcome = HandlesOutcome::default();
         self.hovered = None;
-        if self.hidden || stage.picture.height() <= 0.0 {
+        if self.hidden || stage.picture.height() < LOWEST {
             self.grip = None;
             return outcome;
         }

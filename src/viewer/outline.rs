@@ -99,8 +99,7 @@ fn list_ui(
 /// The button below a list that makes it longer.
 fn add_ui(ui: &mut Ui, command: Command, outcome: &mut OutlineOutcome) {
     let button = ui.small_button(format!("+ {}", command.name()));
-    let button = button.accessible_name(command.name()).on_hover_text(command.about());
-    if button.clicked() {
+    if button.on_hover_text(command.about()).clicked() {
         outcome.command = Some(command);
     }
 }

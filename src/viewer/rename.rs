@@ -62,10 +62,8 @@ impl Renaming {
         if !response.lost_focus() {
             return None;
         }
-        let taken = ui.input(|i| {
-            i.key_pressed(Key::Enter) || i.key_pressed(Key::Tab) || i.pointer.any_pressed()
-        });
+        let escaped = ui.input(|input| input.key_pressed(Key::Escape));
         let text = std::mem::take(&mut self.text);
-        Some(if taken { Left::With(self.thing, text) } else { Left::Without })
+        Some(if escaped { Left::Without } else { Left::With(self.thing, text) })
     }
 }
