@@ -44,7 +44,7 @@ pub struct App {
     /// The name that is being changed, if one is.
     pub(super) renaming: Option<Renaming>,
     handles: Handles,
-    mixer: Mixer,
+    pub(super) mixer: Mixer,
     /// The selection whose costs are watched, and how many solids and materials the scene had.
     watched: Option<Vec<String>>,
     /// A gesture of the wheel lasts until then.

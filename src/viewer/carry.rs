@@ -124,7 +124,7 @@ fn turned(view: &View, along: DVec3, moved: DVec2) -> Option<DVec3> {
 }
 
 /// What a screen tells apart on the globe, in radians.
-const FINEST_TURN: f64 = 0.004;
+const FINEST_TURN: f64 = 0.005;
 
 /// A point within a quarter of a pixel, in few decimal digits: it will stand in the scene file.
 fn tidy(point: DVec3, pixel: f64) -> DVec3 {

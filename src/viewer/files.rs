@@ -252,6 +252,7 @@ impl App {
         self.document = document;
         self.selection = Selection::Scene;
         (self.picked, self.renaming) = (None, None);
+        self.mixer.forget();
         self.show_scene();
     }
 

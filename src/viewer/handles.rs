@@ -245,10 +245,9 @@ fn paint(ui: &Ui, stage: &Stage<'_>, spot: &Spot, (light, selected, alive): (&Li
         globe_ui(&painter, stage, globe, center, alive);
     }
     let radius = RADIUS + if alive { 1.5 } else { 0.0 };
-    let accent = ui.visuals().selection.bg_fill;
     painter.circle_filled(center, radius + if selected { 4.0 } else { 2.0 }, OUTSIDE);
     if selected {
-        painter.circle_filled(center, radius + 3.0, accent.lerp_to_gamma(Color32::WHITE, 0.3));
+        painter.circle_filled(center, radius + 3.0, SELECTED);
     }
     painter.circle_filled(center, radius + 1.0, Color32::WHITE);
     let inside = if light.on { shown(light.color) } else { Color32::from_gray(40) };
@@ -261,6 +260,9 @@ fn paint(ui: &Ui, stage: &Stage<'_>, spot: &Spot, (light, selected, alive): (&Li
 
 /// The dark rim around everything white.
 const OUTSIDE: Color32 = Color32::from_black_alpha(200);
+
+/// The ring around the handle of the selected light.
+const SELECTED: Color32 = Color32::from_rgb(60, 150, 255);
 
 /// The arrow of a direction, and, while it is looked at, the globe.
 fn globe_ui(painter: &Painter, stage: &Stage<'_>, globe: &Globe, at: Pos2, alive: bool) {

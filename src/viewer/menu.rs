@@ -3,6 +3,7 @@
 use eframe::egui::{Align, Button, Label, Layout, MenuBar, Ui};
 
 use super::command::Command;
+use super::inspector::Selection;
 use super::lists::{Subject, offer_ui};
 use crate::document::settings::{Settings, Theme};
 use crate::document::{Document, TEMPLATES};
@@ -143,7 +144,11 @@ pub(super) fn things_ui(
     scene: &Scene,
     chosen: &mut Option<Command>,
 ) {
+    let is_light = matches!(subject.selection, Selection::Light(_));
     for command in Command::ON_THINGS {
+        if is_light && command == Command::Assign {
+            continue;
+        }
         let offer = subject.offer(command, scene);
         if offer_ui(ui, command, with_keys(ui, command, &offer.name), &offer).clicked() {
             *chosen = Some(command);

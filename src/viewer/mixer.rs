@@ -23,9 +23,13 @@ const STOPS: [f64; 2] = [-10.0, 6.0];
 const DARKEST: f64 = -24.0;
 /// Daylight: where the slider stands for a colour without a temperature.
 const DAYLIGHT: f64 = 6504.0;
-/// Widths of the columns in points: switch, solo, name, stops, their number, colour, temperature, its
-/// number, cost.
-const COLUMNS: [f32; 9] = [22.0, 26.0, 130.0, 170.0, 64.0, 40.0, 170.0, 70.0, 108.0];
+/// Least widths of the columns in points: switch, solo, name, stops, their number, colour,
+/// temperature, its number, cost.
+const COLUMNS: [f32; 9] = [22.0, 26.0, 110.0, 120.0, 64.0, 40.0, 120.0, 70.0, 108.0];
+/// The columns of the sliders, which share the space that is left.
+const SLIDERS: [usize; 2] = [3, 6];
+/// What a slider takes at most, in points.
+const WIDEST: f32 = 320.0;
 
 /// What the mixer remembers from turn to turn.
 #[derive(Default)]
@@ -113,6 +117,11 @@ fn with_stops(intensity: Rgb, stops: f64) -> Rgb {
 }
 
 impl Mixer {
+    /// Forgets the lights of a scene that is no longer open.
+    pub(super) fn forget(&mut self) {
+        self.solo = None;
+    }
+
     /// The parameters whose costs the mixer shows.
     pub(super) fn paths(&self, scene: &Scene) -> Vec<String> {
         if !self.open {
@@ -179,7 +188,7 @@ impl Mixer {
 
     fn solo_ui(&mut self, ui: &mut Ui, lights: &mut [Light], i: usize, outcome: &mut MixerOutcome) {
         let held = self.solo.as_ref().is_some_and(|solo| solo.holds(lights, i));
-        let button = ui.add(Button::selectable(held, "S"));
+        let button = ui.add(Button::new("S").selected(held));
         let name = lights[i].name.clone();
         let about = "Solo: this light alone; once more gives the others back what they were";
         let button = button.accessible_name(format!("solo {name}")).on_hover_text(about);
@@ -232,23 +241,28 @@ fn head_ui(ui: &mut Ui, outcome: &mut MixerOutcome) {
     });
 }
 
-/// Cuts a line into [`COLUMNS`].
+/// Cuts a line into columns.
 struct Columns {
     rest: Rect,
-    widths: std::slice::Iter<'static, f32>,
+    widths: std::array::IntoIter<f32, 9>,
 }
 
 impl Columns {
     fn of(ui: &mut Ui) -> Columns {
         let gaps = ui.spacing().item_spacing.x * (COLUMNS.len() - 1) as f32;
-        let width = COLUMNS.iter().sum::<f32>() + gaps;
-        let size = vec2(width, ui.spacing().interact_size.y);
+        let mut widths = COLUMNS;
+        let spare = ui.available_width() - gaps - COLUMNS.iter().sum::<f32>();
+        for slider in SLIDERS {
+            let more = spare.max(0.0) / SLIDERS.len() as f32;
+            widths[slider] = (widths[slider] + more).min(WIDEST);
+        }
+        let size = vec2(widths.iter().sum::<f32>() + gaps, ui.spacing().interact_size.y);
         let (rest, _) = ui.allocate_exact_size(size, Sense::hover());
-        Columns { rest, widths: COLUMNS.iter() }
+        Columns { rest, widths: widths.into_iter() }
     }
 
     fn next<R>(&mut self, ui: &mut Ui, body: impl FnOnce(&mut Ui) -> R) -> R {
-        let width = self.widths.next().copied().unwrap_or(0.0);
+        let width = self.widths.next().unwrap_or(0.0);
         let column = self.rest.with_max_x(self.rest.left() + width);
         self.rest.min.x = column.right() + ui.spacing().item_spacing.x;
         let layout = Layout::left_to_right(Align::Center);
@@ -270,7 +284,7 @@ fn stops_ui(ui: &mut Ui, columns: &mut Columns, light: &mut Light) -> bool {
     };
     let name = format!("{} stops", light.name);
     let mut changed = columns.next(ui, |ui| {
-        ui.spacing_mut().slider_width = COLUMNS[3];
+        ui.spacing_mut().slider_width = ui.available_width();
         let slider = Slider::new(&mut wanted, low..=high).show_value(false);
         let slider = slider.clamping(SliderClamping::Never).trailing_fill(true);
         about(ui.add(slider).accessible_name(&name)).changed()
@@ -325,7 +339,7 @@ fn kelvin_ui(ui: &mut Ui, columns: &mut Columns, light: &mut Light) -> bool {
     };
     let name = format!("{} kelvin", light.name);
     let mut changed = columns.next(ui, |ui| {
-        ui.spacing_mut().slider_width = COLUMNS[6];
+        ui.spacing_mut().slider_width = ui.available_width();
         if present.is_none() {
             ui.multiply_opacity(0.35);
         }
