@@ -22,7 +22,7 @@ const FIELD: f32 = 58.0;
 /// Width of the button that unfolds channels; kept free beside other sliders, so that all align.
 const TOGGLE: f32 = 30.0;
 /// Width of the badge.
-const BADGE: f32 = 108.0;
+pub(super) const BADGE: f32 = 108.0;
 
 /// What a row shows besides its value.
 pub(super) struct Row<'a> {
