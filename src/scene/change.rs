@@ -56,10 +56,12 @@ impl Change {
         let Background { color } = background;
         change.term(*color != new.background.color);
         change.trace(trace, &new.trace);
-        let weighs = |s: &Scene| s.materials.iter().any(Material::weighs_branches);
-        let other_cutoff = trace.cutoff != new.trace.cutoff;
         // What is cut off by geometry is not in the terms.
-        change.ray(other_cutoff && (weighs(old) || weighs(new)), "trace.cutoff");
+        let other_cutoff = trace.cutoff != new.trace.cutoff;
+        for (material, before) in materials.iter().zip(0..).filter(|_| other_cutoff) {
+            change.node(material.weighs_branches(), before, "trace.cutoff");
+            change.casts |= material.weighs_branches() && new.trace.cutoff < trace.cutoff;
+        }
         change.form(solids.len() != new.solids.len(), "the number of solids");
         change.lights(lights, &new.lights);
         change.materials = matched(materials, &new.materials, |m| &m.name);
@@ -189,7 +191,7 @@ impl Change {
             transmit,
             filter,
             ior,
-            fresnel,
+            fresnel: _,
         } = old;
         self.paint(before, paint, &new.paint);
         let local = *kloc != new.kloc || *ambient != new.ambient || *diffuse != new.diffuse;
@@ -197,12 +199,19 @@ impl Change {
         self.term(local || gloss || *emission != new.emission);
         let path = *reflect != new.reflect || *transmit != new.transmit || *filter != new.filter;
         self.term(path);
-        // `shininess` and `roughness`: only the one that the model heeds shapes its peak.
+        // `shininess` and `roughness`: only the one that the model heeds shapes its peak. Hall's model
+        // has Fresnel's weights, whatever `fresnel` says.
         if *model == new.model && Peak::of(old) != Peak::of(new) {
             self.refold.push(index as u16);
         }
-        self.ray(*model != new.model, "model");
-        self.ray(*fresnel != new.fresnel, "fresnel");
+        self.node(*model != new.model, before, "model");
+        self.node(old.weighs_branches() != new.weighs_branches(), before, "fresnel");
+        let branches = !new.reflect.is_black() || !new.transmit.is_black();
+        // Fresnel takes light from branches; without it more of them are worth following.
+        self.casts |= branches && old.weighs_branches() && !new.weighs_branches();
+        // Hall's model shows lights behind what transmits.
+        let hall = *model != Model::Hall && new.model == Model::Hall;
+        self.casts |= hall && !new.transmit.is_black();
         let bends = *ior != new.ior && (old.ior_matters() || new.ior_matters());
         self.node(bends, before, "ior");
         self.casts |= bends && (!new.transmit.is_black() || new.weighs_branches());

@@ -68,8 +68,11 @@ impl Session {
     /// If the change asks for everything.
     pub(super) fn plan(&mut self, scene: &Scene, change: &Change) -> Option<Plan> {
         assert!(!change.everything, "only a trace does everything");
-        let mut reason = change.moves_rays.map(|what| format!("{what} moves rays"));
         let mut casts = change.casts;
+        let mut reason = change.moves_rays.map(|what| match casts {
+            true => format!("{what} moves rays"),
+            false => format!("{what} is read from the kept trees"),
+        });
         let trie = &self.transport.trie;
         let count = trie.nodes().len();
         let (mut nodes, stale) = (change.nodes.clone(), self.stale(scene, change));

@@ -302,9 +302,19 @@ fn pixels_are_named_if_and_only_if_their_trees_grow() {
                         }
                         let is_named =
                             lanes.as_ref().is_some_and(|lanes| lanes[block] >> lane & 1 != 0);
-                        let differs = (0..2)
-                            .map(|_| nodes_of(&mut at) != nodes_of(&mut old_at))
-                            .fold(false, |any, differs| any | differs);
+                        let mut pair = || (nodes_of(&mut at), nodes_of(&mut old_at));
+                        let pairs = [(); 2].map(|()| pair());
+                        let differs = pairs.iter().any(|(new, old)| new != old);
+                        if differs && !is_named {
+                            eprintln!(
+                                "{pairs:?} {:?}",
+                                scene
+                                    .solids
+                                    .iter()
+                                    .map(|s| (&s.name, s.material))
+                                    .collect::<Vec<_>>()
+                            );
+                        }
                         assert!(
                             is_named || !differs,
                             "{name} {path}: tile {tile} block {block} lane {lane} is not named"
