@@ -207,14 +207,10 @@ impl Knob {
     /// The last step at which an index of refraction that the trees were not grown with does not
     /// matter, if it matters beyond.
     fn stale_from(self, session: &Session) -> Option<u32> {
-        let (material, step) = match self {
-            Knob::Reflect(i) => (i, 1f32.to_bits()),
-            Knob::Transmit(i) => (i, 0),
-            Knob::Filter(_) | Knob::Depth | Knob::Cutoff => return None,
-        };
+        let Knob::Transmit(material) = self else { return None };
         let material_now = &session.scene().materials[material];
         let stale = material_now.ior != session.iors[material];
-        (stale && !material_now.ior_matters()).then_some(step)
+        (stale && !session.scene().ior_matters(material)).then_some(0)
     }
 }
 

@@ -122,10 +122,10 @@ impl Session {
     /// Old materials whose index of refraction shows in the new scene, and with which the trees were
     /// not grown: while nothing passed through them it did not matter.
     fn stale(&self, scene: &Scene, change: &Change) -> Vec<u16> {
-        let pairs = scene.materials.iter().zip(&change.materials);
-        let stale = pairs.filter_map(|(new, &before)| {
+        let pairs = scene.materials.iter().zip(&change.materials).enumerate();
+        let stale = pairs.filter_map(|(i, (new, &before))| {
             let before = before?;
-            (new.ior_matters() && new.ior != self.iors[before as usize]).then_some(before)
+            (new.ior != self.iors[before as usize] && scene.ior_matters(i)).then_some(before)
         });
         stale.collect()
     }

@@ -218,8 +218,11 @@ pub(super) const ROWS: &[Row] = &[
     row("materials.brass.fresnel", &[("true", Refold), ("@", Regrow)]),
     row("materials.*.fresnel", &[("true", Refold), ("@", Refold)]),
     row("materials.glass.ior", &[("1", Regrow), ("0.8", Regrow), ("2.4", Regrow), ("@", Regrow)]),
-    // Nothing passes through the others, so nothing is bent.
-    row("materials.*.ior", &[("1", Nothing), ("0.8", Nothing), ("2.4", Nothing), ("@", Nothing)]),
+    // Nothing passes through the others: only what is thinner than air or glass shows it.
+    row(
+        "materials.*.ior",
+        &[("1.6", Nothing), ("2.4", Nothing), ("0.8", Refold), ("1", Refold), ("@", Refold)],
+    ),
     row(
         "materials.mirror.reflect",
         &[
