@@ -15,14 +15,19 @@ impl Scene {
     /// nothing through only tells total reflection from a mirror's, which needs a denser medium in
     /// front of it, or an eye inside it.
     pub fn ior_matters(&self, material: usize) -> bool {
-        let own = &self.materials[material];
-        if own.bends_or_weighs() {
-            return true;
-        }
+        self.ior_matters_below(material).is_none_or(|limit| self.materials[material].ior < limit)
+    }
+
+    /// The index of refraction from which on, upwards, that of a material does not show; `None` if
+    /// it shows whatever it is.
+    pub fn ior_matters_below(&self, material: usize) -> Option<f64> {
         let surrounding = self.around_the_eye();
+        if self.materials[material].bends_or_weighs() || surrounding.contains(&material) {
+            return None;
+        }
         let passed = self.materials.iter().filter(|m| !m.transmit.is_black()).map(|m| m.ior);
         let densest = passed.chain(surrounding.iter().map(|&m| self.materials[m].ior));
-        own.ior < densest.fold(1.0, f64::max) || surrounding.contains(&material)
+        Some(densest.fold(1.0, f64::max))
     }
 
     /// Materials of the solids that may contain the eye, or for a parallel view, any ray's origin.
@@ -32,7 +37,7 @@ impl Scene {
         let reach = match self.camera.lens {
             Lens::Perspective { fov_degrees: _ } => 0.0,
             // Parallel rays begin on a rectangle around the eye.
-            Lens::Parallel { height } => height * (1.0 + width / pixels),
+            Lens::Parallel { height } => height / 2.0 * (width / pixels).hypot(1.0),
         };
         let around = known.filter(|solid| solid.may_contain(self.camera.eye, reach));
         around.map(|solid| solid.material).collect()

@@ -83,8 +83,8 @@ impl Session {
         }
         if !stale.is_empty() {
             reason.get_or_insert_with(|| "ior moves rays".into());
-            casts = true;
-            nodes.extend(stale);
+            casts |= stale.iter().any(|(_, leads)| *leads);
+            nodes.extend(stale.into_iter().map(|(before, _)| before));
         }
         let mut concern = Concern {
             terms: vec![false; if nodes.is_empty() && !change.shadows { 0 } else { count }],
@@ -120,12 +120,14 @@ impl Session {
     }
 
     /// Old materials whose index of refraction shows in the new scene, and with which the trees were
-    /// not grown: while nothing passed through them it did not matter.
-    fn stale(&self, scene: &Scene, change: &Change) -> Vec<u16> {
+    /// not grown, because it did not matter; and whether rays go on through them.
+    fn stale(&self, scene: &Scene, change: &Change) -> Vec<(u16, bool)> {
         let pairs = scene.materials.iter().zip(&change.materials).enumerate();
         let stale = pairs.filter_map(|(i, (new, &before))| {
             let before = before?;
-            (new.ior != self.iors[before as usize] && scene.ior_matters(i)).then_some(before)
+            let leads = !new.transmit.is_black() || new.weighs_branches();
+            let differs = new.ior != self.iors[before as usize] && scene.ior_matters(i);
+            differs.then_some((before, leads))
         });
         stale.collect()
     }

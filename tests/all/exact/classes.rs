@@ -20,6 +20,8 @@ fn all_kinds() -> Scene {
 fn parallel() -> Scene {
     let mut scene = all_kinds();
     scene.camera.lens = Lens::Parallel { height: 4.5 };
+    // No ray begins below the floor.
+    scene.camera.eye.z = 4.5;
     scene
 }
 
