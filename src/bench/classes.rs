@@ -25,9 +25,6 @@ pub(super) struct Yardstick {
 
 /// One row per class: exponents, random edits without rays, edits that regrow, badges.
 pub(super) fn measure(session: &mut Session, by: &Yardstick) -> Result<Value, TraceError> {
-    let exponents = exponents(session, by)?;
-    let refold = exponents["ms"]["median"].as_f64().unwrap_or(f64::NAN);
-    let random = random_edits(session, by, refold)?;
     let badges = badges(session);
     let mut regrows = Vec::new();
     for (what, scene) in regrowing(session) {
@@ -35,6 +32,9 @@ pub(super) fn measure(session: &mut Session, by: &Yardstick) -> Result<Value, Tr
         regrows.push(regrow(session, &what, scene, by)?);
         regrows.push(regrow(session, &format!("{what}, undone"), (*back).clone(), by)?);
     }
+    let exponents = exponents(session, by)?;
+    let refold = exponents["ms"]["median"].as_f64().unwrap_or(f64::NAN);
+    let random = random_edits(session, by, refold)?;
     Ok(json!({
         "exponents": exponents, "random": random, "badges": badges, "regrow": regrows,
     }))

@@ -71,6 +71,16 @@ impl KeptTrees {
         crossings.clear();
     }
 
+    /// Makes room for as much as `other` holds.
+    pub fn reserve_as(&mut self, other: &KeptTrees) {
+        let KeptTrees { blocks, hits, nodes, lights, crossings } = other;
+        self.blocks.reserve_exact(blocks.len());
+        self.hits.reserve_exact(hits.len());
+        self.nodes.reserve_exact(nodes.len());
+        self.lights.reserve_exact(lights.len());
+        self.crossings.reserve_exact(crossings.len());
+    }
+
     /// Whether every block is there.
     pub fn is_whole(&self) -> bool {
         self.blocks.len() == TILE_BLOCKS + 1

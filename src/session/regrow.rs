@@ -274,6 +274,9 @@ impl Regrow {
         let old = self.forest.tiles[plan.tile].as_deref();
         let mut trees = KeptTrees::default();
         trees.clear();
+        if let Some(old) = old {
+            trees.reserve_as(old);
+        }
         folder.begin_tile();
         worker.rays = RayCounts::default();
         let most = (self.budget / 8).max(LEAST_BLOCK_LIMIT);

@@ -288,6 +288,10 @@ impl App {
             })
             .inner;
         self.select(handled.select);
+        // Where the pointer was last, pixels that are grown again come first.
+        if outcome.pointer.is_some() {
+            self.live.look_at(outcome.pointer);
+        }
         if let Some(point) = outcome.clicked {
             self.pick(point, edited, ui.input(|i| i.modifiers.alt));
         }

@@ -52,6 +52,8 @@ pub(super) struct PictureOutcome {
     pub(super) clicked: Option<[f64; 2]>,
     /// Whether the camera was moved.
     pub(super) camera_moved: bool,
+    /// Where the pointer is, in pixels of the picture.
+    pub(super) pointer: Option<[f64; 2]>,
 }
 
 impl PictureView {
@@ -139,13 +141,14 @@ impl PictureView {
         self.wheel(ui, &response, camera, &mut outcome);
         self.drag(ui, &response, camera, &mut outcome);
         let place = self.place(view, dots);
-        if response.clicked()
-            && let Some(at) = response.interact_pointer_pos()
-            && place.contains(at)
-        {
+        let pixel = |at: Pos2| {
             let point = (at - place.min) / place.size() * self.size;
-            outcome.clicked = Some([f64::from(point.x), f64::from(point.y)]);
+            place.contains(at).then_some([f64::from(point.x), f64::from(point.y)])
+        };
+        if response.clicked() {
+            outcome.clicked = response.interact_pointer_pos().and_then(pixel);
         }
+        outcome.pointer = ui.input(|i| i.pointer.latest_pos()).and_then(pixel);
         self.paint(ui, view, place);
         let cursor = match (self.camera_tool, response.dragged()) {
             (true, _) => CursorIcon::Move,

@@ -43,17 +43,27 @@ pub(super) fn status_ui(ui: &mut Ui, status: &Status, shown: Option<&Shown>) -> 
     command
 }
 
-const STAGE: &str = "A new picture comes coarse first, then with one sample per pixel, then whole";
+const STAGE: &str = "A new picture comes coarse first, then with one sample per pixel, then whole; \
+                     dotted pixels are still to be grown again, the others are exact";
 const CACHE: &str = "Kept ray trees, matrix and highlight lists, of the memory that they may take";
 
-fn stage_text(status: &Status, shown: Option<&Shown>) -> &'static str {
+fn stage_text(status: &Status, shown: Option<&Shown>) -> String {
     match shown.map(|s| s.stage) {
-        None => "no picture yet",
-        Some(Stage::Coarse) => "coarse",
-        Some(Stage::OneSample) => "one sample",
-        Some(Stage::Mending) => "growing",
-        Some(Stage::Whole) if status.in_step => "exact",
-        Some(Stage::Whole) => "earlier scene",
+        None => "no picture yet".into(),
+        Some(Stage::Coarse) => "coarse".into(),
+        Some(Stage::OneSample) => "one sample".into(),
+        Some(Stage::Mending) => pending_text(status.pending),
+        Some(Stage::Whole) if status.in_step => "exact".into(),
+        Some(Stage::Whole) => "earlier scene".into(),
+    }
+}
+
+/// How many pixels are still to be grown again.
+fn pending_text(pixels: u64) -> String {
+    match pixels {
+        n if n < 10_000 => format!("{n} pixels pending"),
+        n if n < 1_000_000 => format!("{} k pixels pending", n / 1000),
+        n => format!("{:.1} M pixels pending", n as f64 / 1e6),
     }
 }
 
@@ -76,8 +86,8 @@ fn edit_about(report: &EditReport) -> String {
     let done = match report.class {
         Class::None => "Nothing visible changed",
         Class::Reshade => "Shading was evaluated again from the kept ray trees",
-        Class::Refold => "Highlights were summed again from kept angles, then shaded",
-        Class::Regrow => "Some pixels were traced again",
+        Class::Refold => "Kept angles or ray trees were folded again, then shaded",
+        Class::Regrow => "Some pixels' ray trees were grown again; kept ones answered the rest",
         Class::Retrace => "Everything was traced",
     };
     match &report.reason {
@@ -95,6 +105,14 @@ fn cache_text(status: &Status) -> String {
 mod tests {
     use super::*;
     use crate::forest::grow::RayCounts;
+
+    #[test]
+    fn pending_pixels_are_counted_in_few_digits() {
+        assert_eq!(pending_text(0), "0 pixels pending");
+        assert_eq!(pending_text(9_999), "9999 pixels pending");
+        assert_eq!(pending_text(123_456), "123 k pixels pending");
+        assert_eq!(pending_text(2_073_600), "2.1 M pixels pending");
+    }
 
     #[test]
     fn an_edit_is_told_with_class_time_and_rays() {

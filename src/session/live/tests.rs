@@ -443,3 +443,6 @@ fn a_window_that_closes_during_a_trace_does_not_wait_for_its_end() {
     drop(window.live);
     assert!(closed.elapsed() < Duration::from_secs(2), "{:?}", closed.elapsed());
 }
+
+#[path = "tests_mending.rs"]
+mod mending;

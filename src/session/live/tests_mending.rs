@@ -1,0 +1,157 @@
+//! Pictures of which some pixels are grown again, while that happens and after.
+
+use super::*;
+use crate::film::layout::{LANES, Layout, Place, TILE_BLOCKS};
+use crate::session::Work;
+use crate::session::plan::Plan;
+
+/// A plan for an edit of a whole picture.
+fn plan(scene: &Scene, edited: &Scene) -> Plan {
+    match fresh(scene).edit_without_rays(&Arc::new(edited.clone())) {
+        Err(Work::Regrow(plan)) => plan,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// Whether every pixel that `plan` does not name is the same in two frames, and how many there are.
+fn same_beside(plan: &Plan, a: &Frame, b: &Frame) -> (bool, usize) {
+    let layout = Layout::new(a.size);
+    let (mut same, mut count) = (a.size == b.size, 0);
+    for tile in 0..layout.tiles() {
+        let named = plan.tiles.iter().find(|planned| planned.tile == tile);
+        for (block, lane) in (0..TILE_BLOCKS).flat_map(|b| (0..LANES).map(move |l| (b, l))) {
+            let Some([x, y]) = layout.pixel(Place { tile, block, lane }) else { continue };
+            if named.is_none_or(|planned| planned.lanes[block] >> lane & 1 == 0) {
+                let at = (y * a.size[0] + x) as usize * 4;
+                same &= a.bytes[at..at + 4] == b.bytes[at..at + 4];
+                count += 1;
+            }
+        }
+    }
+    (same, count)
+}
+
+/// Takes every picture until the wish is shown; those that came while pixels were pending.
+fn pictures(window: &mut Window) -> Vec<(Shown, u64)> {
+    let mut seen = Vec::new();
+    let begun = Instant::now();
+    loop {
+        window.status = window.live.status();
+        if let Some(shown) = window.live.take_shown() {
+            seen.push((shown.clone(), window.status.pending));
+            window.newest = Some(shown);
+        }
+        if window.status.in_step {
+            seen.retain(|(shown, _)| shown.stage == Stage::Mending);
+            return seen;
+        }
+        let left = PATIENCE.saturating_sub(begun.elapsed());
+        window.woken.recv_timeout(left).expect("the wish is shown at last");
+    }
+}
+
+#[test]
+fn pixels_beside_a_plan_are_final_from_the_first_picture_on() {
+    let scene = scene("whitted", [400, 225], 8);
+    let edited = with(&with(&scene, "materials.mirror.transmit", "0.4"), "picture.exposure", "0.3");
+    let plan = plan(&scene, &edited);
+    let expected = fresh(&edited);
+    let mut window = Window::showing(&scene);
+    window.live.look_at(Some([300.0, 20.0]));
+    window.want(&edited);
+    let seen = pictures(&mut window);
+    assert!(!seen.is_empty(), "a picture while pixels are pending");
+    for (shown, pending) in &seen {
+        assert_eq!(*shown.scene, edited);
+        let (same, count) = same_beside(&plan, &shown.frame, expected.frame());
+        assert!(same, "a pixel that the plan does not name");
+        assert!(count > 500, "{count} pixels that it does not name");
+        assert!(*pending <= plan.pixels(), "{pending}");
+    }
+    assert!(seen.iter().any(|(_, pending)| *pending > 0), "pending pixels are counted");
+    window.shows_whole(&edited);
+    let report = window.last();
+    assert_eq!((report.class, report.pixels), (Class::Regrow, plan.pixels()));
+    assert_eq!((report.rays.camera, window.live.status().pending), (0, 0));
+    assert!(report.rays.total() < expected.trace_report().rays.total() / 2);
+    let mut other = expected.frame().clone();
+    other.bytes.iter_mut().for_each(|byte| *byte ^= 1);
+    assert!(!same_beside(&plan, &other, expected.frame()).0, "other pixels are found");
+}
+
+#[test]
+fn a_cancel_leaves_all_trees_as_they_were_and_resume_goes_on() {
+    let scene = slow();
+    let moved = with(&scene, "lights.key.point", "[-2, -4, 9]");
+    let mut window = Window::showing(&scene);
+    window.want(&moved);
+    window
+        .wait("pixels are grown", |w| w.newest.as_ref().is_some_and(|s| s.stage == Stage::Mending));
+    window.live.cancel();
+    window.wait("held", |w| w.status.held);
+    window.wait("the old picture", |w| w.shown().stage == Stage::Whole);
+    window.shows_whole(&scene);
+    assert_eq!(window.status.pending, 0);
+    let brighter = with(&scene, "materials.tiles.diffuse", "0.9");
+    window.want(&brighter);
+    window.wait("an edit of the old picture", |w| w.status.in_step);
+    window.shows_whole(&brighter);
+    window.want(&moved);
+    window.wait("moved at last", |w| w.status.in_step);
+    window.shows_whole(&moved);
+}
+
+#[test]
+fn a_light_that_is_dragged_ends_where_it_is_dropped() {
+    let scene = scene("whitted", [320, 180], 4);
+    let at = |i: usize| with(&scene, "lights.key.point", &format!("[-4, {}, 7]", i as f64 * 0.1));
+    let mut window = Window::showing(&scene);
+    for i in 0..40 {
+        window.want(&at(i));
+        std::thread::sleep(Duration::from_millis(12));
+        window.wait("nothing", |_| true);
+    }
+    window.wait("the last place", |w| w.status.in_step);
+    window.shows_whole(&at(39));
+    assert_eq!(window.last().rays.camera, 0);
+}
+
+#[test]
+fn edits_while_pixels_are_grown_end_as_a_fresh_session() {
+    let scene = slow();
+    let mut window = Window::showing(&scene);
+    let mut edited = with(&scene, "materials.ruby.ior", "1.31");
+    window.want(&edited);
+    for i in 0..20 {
+        let value = format!("{:.2}", 0.2 + 0.03 * f64::from(i));
+        edited = with(&edited, "materials.tiles.diffuse", &value);
+        edited = with(&edited, "materials.amber.shininess", &format!("{}", 10 + i));
+        window.want(&edited);
+        std::thread::sleep(Duration::from_millis(15));
+    }
+    window.wait("all edits", |w| w.status.in_step);
+    window.shows_whole(&edited);
+    // What comes alive after a wish that is still being grown is grown next.
+    edited = with(&edited, "materials.tiles.reflect", "0.1");
+    window.want(&edited);
+    edited = with(&edited, "materials.tiles.reflect", "0.9");
+    window.want(&edited);
+    window.wait("both wishes", |w| w.status.in_step);
+    window.shows_whole(&edited);
+    // And back, at once.
+    window.want(&scene);
+    window.wait("the first scene", |w| w.status.in_step);
+    window.shows_whole(&scene);
+}
+
+#[test]
+fn an_export_waits_for_the_last_pending_pixel() {
+    let folder = folder();
+    let path = folder.path().join("moved.png");
+    let scene = slow();
+    let moved = with(&scene, "lights.key.point", "[-2, -4, 9]");
+    let mut window = Window::showing(&scene);
+    window.want(&moved);
+    export(&mut window, path.clone(), scene.picture.size);
+    assert_eq!(decoded(&path).0, opaque(fresh(&moved).frame()));
+}
