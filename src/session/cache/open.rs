@@ -1,0 +1,69 @@
+//! Opens a scene with what a cache kept of it: the difference costs what an edit costs.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use rayon::ThreadPoolBuilder;
+
+use super::{CacheError, CacheReport, Cached, Fault, read};
+use crate::progress::Progress;
+use crate::scene::Scene;
+use crate::session::canvas::Canvas;
+use crate::session::trace::TraceError;
+use crate::session::{EditReport, Options, Session};
+use crate::shade::cpu::Tiles;
+use crate::shade::terms::{TermProgram, TermValues};
+
+/// How a scene was opened from a cache.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OpenedCache {
+    /// What was read.
+    pub cache: CacheReport,
+    /// What the difference between the cached scene and the opened one cost.
+    pub edit: EditReport,
+}
+
+impl Session {
+    /// Opens a scene with the cache at `path`. On an error that is not [`Fault::Stopped`] the scene
+    /// can be opened without it, by [`Session::open`].
+    pub fn open_cached(
+        scene: impl Into<Arc<Scene>>,
+        path: &Path,
+        options: Options,
+        progress: &Progress,
+    ) -> Result<(Session, OpenedCache), CacheError> {
+        assert!(options.threads > 0, "a session needs a thread");
+        let scene = scene.into();
+        let stopped = |error: TraceError| Fault::from(error).of(path);
+        let pool = ThreadPoolBuilder::new().num_threads(options.threads).build();
+        let pool = pool.map_err(|_| stopped(TraceError::Threads { threads: options.threads }))?;
+        let cached = read(path, &scene, &pool, options.memory, progress)?;
+        let cache = cached.report;
+        let mut session = Session::from_cached(cached, options, pool);
+        let edit = session.edit(scene, progress).map_err(stopped)?;
+        Ok((session, OpenedCache { cache, edit }))
+    }
+
+    /// The session of the cached scene, its picture drawn.
+    fn from_cached(cached: Cached, options: Options, pool: rayon::ThreadPool) -> Session {
+        let Cached { scene, geometry, geometry_seconds, forest, transport, trace, report: _ } =
+            cached;
+        let mut session = Session {
+            canvas: Canvas::new(scene.picture.size),
+            scene: Arc::new(scene),
+            options,
+            pool: Arc::new(pool),
+            geometry: Arc::new(geometry),
+            forest,
+            program: TermProgram::new(&transport.trie),
+            transport,
+            terms: TermValues::default(),
+            before: Vec::new(),
+            trace,
+            geometry_seconds,
+        };
+        session.evaluate_terms();
+        session.draw(Tiles::All);
+        session
+    }
+}

@@ -1,0 +1,226 @@
+//! Whether what was read may be used: every invariant and every index that shading, folding and
+//! reading trees rely on, as an answer instead of a panic.
+
+use super::codec::Unsound;
+use crate::film::layout::{LANES, Layout, Place, TILE_BLOCKS};
+use crate::fold::transport::{
+    BlockStart, HighlightList, Highlights, Plane, SPARSE_LANES, Single, TransportTile,
+};
+use crate::fold::trie::{Marks, ROOT, Trie, TrieNode};
+use crate::forest::tree::{BLOCKED, Branch, LightHit, Node, Start, TileTrees};
+use crate::geometry::Geometry;
+use crate::scene::factor::{Factor, Kind};
+use crate::scene::fields::DEPTH;
+use crate::scene::{Paint, Scene};
+
+fn ensure(holds: bool, what: Unsound) -> Result<(), Unsound> {
+    if holds { Ok(()) } else { Err(what) }
+}
+
+/// How many slots each material's paint has.
+fn slots(scene: &Scene) -> Vec<usize> {
+    let count = |paint: &Paint| match paint {
+        Paint::Solid(_) => 1,
+        Paint::Checker { .. } => 2,
+    };
+    scene.materials.iter().map(|m| count(&m.paint)).collect()
+}
+
+/// Whether the terms of a trie, which stand in canonical order, are products of a scene's factors.
+pub(super) fn trie(trie: &Trie, scene: &Scene) -> Result<(), Unsound> {
+    let slots = slots(scene);
+    for node in &trie.nodes()[1..] {
+        let TrieNode { parent, factor, marks } = *node;
+        ensure(is_of(factor, &slots, scene.lights.len()), "a term has a factor of nothing")?;
+        let above = &trie.nodes()[parent as usize];
+        let follows = parent == ROOT || above.factor.is_path();
+        ensure(follows || !factor.is_path(), "a path goes on behind light")?;
+        ensure(!marks.has(Marks::FRONTIER) || factor.is_path(), "a frontier that is no path")?;
+        let shadow = factor.kind() == Kind::Shadow;
+        ensure(!marks.has(Marks::WITNESS) || shadow, "a witness that is no shadow")?;
+    }
+    Ok(())
+}
+
+/// Whether a scene with these slots per material, and so many lights, has the factor.
+fn is_of(factor: Factor, slots: &[usize], lights: usize) -> bool {
+    let (index, slot) = (factor.index(), factor.slot());
+    match factor.kind() {
+        Kind::Background => index == 0 && slot == 0,
+        Kind::Reflect | Kind::Transmit | Kind::TotalReflect | Kind::Shadow => {
+            index < slots.len() && slot == 0
+        }
+        Kind::Ambient | Kind::Diffuse | Kind::Specular => {
+            slots.get(index).is_some_and(|slots| slot < *slots)
+        }
+        Kind::Light => index < lights && slot == 0,
+        Kind::Channel => index < 3 && slot == 0,
+    }
+}
+
+/// Whether a tile's part of a matrix of so many terms is sound. Its highlight lists are not looked
+/// at.
+pub(super) fn matrix(tile: &TransportTile, trie_nodes: usize) -> Result<(), Unsound> {
+    let TransportTile { terms, starts, entries, planes, singles, highlights: _ } = tile;
+    ensure(terms.is_sorted_by(|a, b| a < b), "the dictionary is out of order")?;
+    let last = terms.last().is_none_or(|last| (*last as usize) < trie_nodes);
+    ensure(last, "the dictionary has an unknown term")?;
+    ensure(entries.len() == planes.len(), "not one plane per entry")?;
+    positions(starts, planes.len(), singles.len())?;
+    let known = |entry: usize| entry < terms.len();
+    ensure(entries.iter().all(|&e| known(e as usize)), "an unknown entry")?;
+    ensure(singles.iter().all(|s| known(s.entry())), "an unknown entry of a single")?;
+    for pair in starts.windows(2) {
+        let entries = &entries[pair[0].plane as usize..pair[1].plane as usize];
+        ensure(entries.is_sorted_by(|a, b| a < b), "entries are out of order")?;
+        let singles = &singles[pair[0].single as usize..pair[1].single as usize];
+        ensure(singles.is_sorted_by(|a, b| a.place < b.place), "singles are out of order")?;
+        let few = |s: &[Single]| s.len() <= SPARSE_LANES as usize;
+        ensure(singles.chunk_by(|a, b| a.entry() == b.entry()).all(few), "singles of many lanes")?;
+    }
+    // No short cut inside of a plane, so that the loop vectorises.
+    let finite = |plane: &Plane| plane.0.iter().fold(true, |all, c| all & c.is_finite());
+    let all = planes.iter().all(finite) && singles.iter().all(|s| s.coefficient.is_finite());
+    ensure(all, "a coefficient is not finite")
+}
+
+/// Whether the blocks of a tile begin where the ones before them end.
+fn positions(starts: &[BlockStart], planes: usize, singles: usize) -> Result<(), Unsound> {
+    ensure(starts.len() == TILE_BLOCKS + 1, "not 64 blocks")?;
+    let rising = |a: &BlockStart, b: &BlockStart| a.plane <= b.plane && a.single <= b.single;
+    ensure(starts.is_sorted_by(rising), "blocks are out of order")?;
+    let ends = [starts[0], starts[TILE_BLOCKS]].map(|s| [s.plane as usize, s.single as usize]);
+    ensure(ends == [[0, 0], [planes, singles]], "blocks leave something out")
+}
+
+/// Whether highlight lists belong to a sound tile of a scene with so many materials.
+pub(super) fn highlights(
+    highlights: &Highlights,
+    tile: &TransportTile,
+    materials: usize,
+) -> Result<(), Unsound> {
+    let Highlights { lists, counts, log2_cosines } = highlights;
+    let mut lanes = 0;
+    for list in lists {
+        ensure(list.mask != 0, "a highlight of no lane")?;
+        ensure((list.material as usize) < materials, "a highlight of an unknown material")?;
+        target(list, tile)?;
+        lanes += list.mask.count_ones() as usize;
+    }
+    ensure(lanes == counts.len(), "not one count per lane of every highlight")?;
+    ensure(counts.iter().all(|&c| c > 0), "a lane without samples")?;
+    let samples: usize = counts.iter().map(|&c| usize::from(c)).sum();
+    ensure(samples == log2_cosines.len(), "highlights of another number of samples")?;
+    let cosine = |chunk: &[f32]| chunk.iter().fold(true, |all, l| all & (*l <= 0.0));
+    ensure(log2_cosines.chunks(LANES).all(cosine), "a cosine above 1")
+}
+
+/// Whether a highlight's coefficients stand where its list says.
+fn target(list: &HighlightList, tile: &TransportTile) -> Result<(), Unsound> {
+    if list.at & HighlightList::SINGLE == 0 {
+        return ensure((list.at as usize) < tile.planes.len(), "a highlight of no plane");
+    }
+    let from = (list.at & !HighlightList::SINGLE) as usize;
+    let to = from + list.mask.count_ones() as usize;
+    let singles = tile.singles.get(from..to).ok_or("a highlight of no singles")?;
+    let mask = singles.iter().fold(0, |mask, s| mask | 1u16 << s.lane());
+    let one = singles.iter().all(|s| s.entry() == singles[0].entry());
+    ensure(mask == list.mask && one, "a highlight of other lanes")
+}
+
+/// What trees may refer to.
+pub(super) struct Surroundings<'a> {
+    scene: &'a Scene,
+    geometry: &'a Geometry,
+    slots: Vec<usize>,
+    layout: Layout,
+}
+
+impl<'a> Surroundings<'a> {
+    /// Those of a scene and its geometry.
+    pub(super) fn new(scene: &'a Scene, geometry: &'a Geometry) -> Surroundings<'a> {
+        let layout = Layout::new(scene.picture.size);
+        Surroundings { scene, geometry, slots: slots(scene), layout }
+    }
+
+    /// Whether the trees of a tile are whole: whoever reads the samples of its pixels in order
+    /// comes to the end of every array at once, and to nothing that the scene has not.
+    pub(super) fn trees(&self, trees: &TileTrees, tile: usize) -> Result<(), Unsound> {
+        let TileTrees { blocks, hits, nodes, lights, crossings } = trees;
+        ensure(blocks.len() == TILE_BLOCKS, "not 64 blocks")?;
+        let mut walk = Walk { trees, at: Start::default(), depths: Vec::new() };
+        for (block, start) in blocks.iter().enumerate() {
+            ensure(*start == walk.at, "a block starts elsewhere than its samples")?;
+            let pixel = |lane: &usize| self.layout.pixel(Place { tile, block, lane: *lane });
+            let pixels = (0..LANES).filter(|lane| pixel(lane).is_some()).count();
+            for _ in 0..pixels * self.scene.trace.samples as usize {
+                walk.sample(self)?;
+            }
+        }
+        let Start { sample, node, light, crossing } = walk.at;
+        let read = [sample, node, light, crossing].map(|n| n as usize);
+        let all = [hits.len(), nodes.len(), lights.len(), crossings.len()];
+        ensure(read == all, "something is left over")
+    }
+
+    fn node(&self, node: &Node) -> Result<(), Unsound> {
+        let Node { t, primitive, material, lights: _, slot, ends } = *node;
+        ensure(t > 0.0 && t.is_finite(), "a distance is not above 0")?;
+        ensure((primitive as usize) < self.geometry.primitives(), "an unknown primitive")?;
+        let solid = &self.scene.solids[self.geometry.solid(primitive) as usize];
+        ensure(solid.material == usize::from(material), "a surface of another material")?;
+        ensure(usize::from(slot) < self.slots[solid.material], "an unknown slot")?;
+        let total = ends.transmitted() == Branch::Absent;
+        let both = ends.reflected() != Branch::Absent && ends.total() == total;
+        ensure(both, "branches that no surface has")
+    }
+
+    fn light(&self, hit: &LightHit, crossed: &[u16]) -> Result<(), Unsound> {
+        let LightHit { light, crossed: _, n_dot_l, one_minus_r_dot_v } = *hit;
+        ensure((light as usize) < self.scene.lights.len(), "an unknown light")?;
+        let known = crossed.iter().all(|&m| (m as usize) < self.slots.len());
+        ensure(known && crossed.is_sorted(), "crossings out of order")?;
+        let finite = n_dot_l.is_finite() && one_minus_r_dot_v.is_finite();
+        ensure(finite, "a cosine is not finite")
+    }
+}
+
+/// Reads a tile's trees in order, and never beyond their ends.
+struct Walk<'a> {
+    trees: &'a TileTrees,
+    at: Start,
+    /// Depths of the nodes that are still to come of the present sample, the next one last.
+    depths: Vec<u64>,
+}
+
+impl Walk<'_> {
+    fn sample(&mut self, within: &Surroundings) -> Result<(), Unsound> {
+        const END: Unsound = "trees end too early";
+        let hit = *self.trees.hits.get(self.at.sample as usize).ok_or(END)?;
+        self.at.sample += 1;
+        self.depths.clear();
+        self.depths.extend(hit.then_some(0));
+        while let Some(depth) = self.depths.pop() {
+            ensure(depth <= DEPTH.high as u64, "a tree deeper than the deepest limit")?;
+            let node = self.trees.nodes.get(self.at.node as usize).ok_or(END)?;
+            self.at.node += 1;
+            within.node(node)?;
+            for branch in [node.ends.reflected(), node.ends.transmitted()] {
+                self.depths.extend((branch == Branch::Grown).then_some(depth + 1));
+            }
+            let mut previous = None;
+            for _ in 0..node.lights {
+                let hit = self.trees.lights.get(self.at.light as usize).ok_or(END)?;
+                let from = self.at.crossing as usize;
+                let count = if hit.crossed == BLOCKED { 1 } else { usize::from(hit.crossed) };
+                let crossed = self.trees.crossings.get(from..from + count).ok_or(END)?;
+                self.at.light += 1;
+                self.at.crossing += count as u32;
+                within.light(hit, crossed)?;
+                ensure(previous < Some(hit.light), "lights out of order")?;
+                previous = Some(hit.light);
+            }
+        }
+        Ok(())
+    }
+}
