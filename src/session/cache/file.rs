@@ -31,6 +31,8 @@ pub(super) const PREFIX: usize = MAGIC.len() + 16;
 const LENGTH: u64 = 8;
 /// More arrays than any part has.
 const MOST_ARRAYS: u64 = 64;
+/// No item takes more than so many times its bytes in a section when it is in memory.
+const MOST_PADDING: u64 = 4;
 /// LZ4 makes nothing more than this many times smaller.
 const MOST_RATIO: u64 = 255;
 
@@ -58,7 +60,8 @@ impl Part {
     fn is_plausible(&self) -> bool {
         let Part { stored, plain, held, checksum: _ } = *self;
         let packed = stored <= plain && plain <= stored.saturating_mul(MOST_RATIO);
-        packed && plain <= held.saturating_add(LENGTH * MOST_ARRAYS)
+        let room = LENGTH * MOST_ARRAYS;
+        packed && plain <= held.saturating_add(room) && held <= plain.saturating_mul(MOST_PADDING)
     }
 }
 
@@ -275,8 +278,8 @@ impl Opened {
         let tiles = self.header.parts.len().saturating_sub(2) / 3;
         let fault = |what: Unsound| Fault::damaged(Numbers { tiles }.name(number), what);
         let part = *self.header.parts.get(number).ok_or_else(|| fault("there is none"))?;
-        if !part.is_there() || !part.is_plausible() {
-            return Err(fault("its lengths are such as none has"));
+        if !part.is_there() {
+            return Err(fault("there is none"));
         }
         let Scratch { stored, plain } = scratch;
         self.read(self.offsets[number], part.stored as usize, stored)?;
@@ -312,8 +315,12 @@ impl Opened {
     }
 }
 
-/// Where parts begin that stand one after the other from `first` to the end of the file.
+/// Where parts begin that stand one after the other from `first` to the end of the file. Their
+/// lengths are found plausible.
 fn offsets(parts: &[Part], first: u64, length: u64) -> Result<Vec<u64>, Fault> {
+    if !parts.iter().all(Part::is_plausible) {
+        return Err(Fault::damaged("the header", "a part has a length that none has"));
+    }
     let mut offsets = Vec::with_capacity(parts.len());
     let mut end = Some(first);
     for part in parts {

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use rayon::ThreadPoolBuilder;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::{CacheError, CacheReport, Cached, Fault, read};
 use crate::progress::Progress;
@@ -39,20 +39,20 @@ impl Session {
         let pool = pool.map_err(|_| stopped(TraceError::Threads { threads: options.threads }))?;
         let cached = read(path, &scene, &pool, options.memory, progress)?;
         let cache = cached.report;
-        let mut session = Session::from_cached(cached, options, pool);
+        let mut session = Session::from_cached(cached, options, Arc::new(pool));
         let edit = session.edit(scene, progress).map_err(stopped)?;
         Ok((session, OpenedCache { cache, edit }))
     }
 
     /// The session of the cached scene, its picture drawn.
-    fn from_cached(cached: Cached, options: Options, pool: rayon::ThreadPool) -> Session {
+    pub(super) fn from_cached(cached: Cached, options: Options, pool: Arc<ThreadPool>) -> Session {
         let Cached { scene, geometry, geometry_seconds, forest, transport, trace, report: _ } =
             cached;
         let mut session = Session {
             canvas: Canvas::new(scene.picture.size),
             scene: Arc::new(scene),
             options,
-            pool: Arc::new(pool),
+            pool,
             geometry: Arc::new(geometry),
             forest,
             program: TermProgram::new(&transport.trie),
