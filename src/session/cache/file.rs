@@ -5,8 +5,8 @@
 //! length of the header  8 bytes
 //! its checksum          8 bytes
 //! header                program, hashes of meshes, times, table of parts
-//! parts                 one after the other to the end of the file, each LZ4 or, where that is no
-//!                       smaller, as it is
+//! parts                 one after the other to the end of the file, each LZ4 or, where that saves
+//!                       little, as it is
 //! ```
 
 use std::fs::File;
@@ -33,6 +33,9 @@ const LENGTH: u64 = 8;
 const MOST_ARRAYS: u64 = 64;
 /// No item takes more than so many times its bytes in a section when it is in memory.
 const MOST_PADDING: u64 = 4;
+/// A part is compressed if that saves one of so many bytes: angles, of which it saves fewer, would
+/// take more time to unpack than to read.
+const LEAST_GAIN: usize = 8;
 /// LZ4 makes nothing more than this many times smaller.
 const MOST_RATIO: u64 = 255;
 
@@ -203,8 +206,9 @@ pub(super) fn hashes(scene: &Scene) -> Vec<u128> {
 /// Compresses a section. Gives what stands in the file, and its place in the table but for the
 /// offset.
 pub(super) fn pack(section: &Section) -> (Vec<u8>, Part) {
-    let packed = block::compress(&section.bytes);
-    let stored = if packed.len() < section.bytes.len() { packed } else { section.bytes.clone() };
+    let (plain, packed) = (&section.bytes, block::compress(&section.bytes));
+    let worth = packed.len() < plain.len() - plain.len() / LEAST_GAIN;
+    let stored = if worth { packed } else { plain.clone() };
     let part = Part {
         stored: stored.len() as u64,
         plain: section.bytes.len() as u64,

@@ -119,13 +119,12 @@ fn what_is_kept_after_edits_is_as_good() {
     let mut session = open(&all_kinds(), 2);
     for step in 0..6 {
         let mut scene = session.scene().clone();
-        let colors: Vec<_> = parameters(&scene).into_iter().map(|p| p.path).collect();
-        let colors: Vec<&str> = colors.iter().map(String::as_str).collect();
+        let weights = ["reflect", "transmit", "filter", "color", "intensity", "diffuse"];
+        let names: Vec<_> = parameters(&scene).into_iter().map(|p| p.path).collect();
+        let is_weight = |name: &&str| weights.iter().any(|weight| name.ends_with(weight));
+        let names: Vec<&str> = names.iter().map(String::as_str).filter(is_weight).collect();
         for _ in 0..3 {
-            let name = random.pick(&colors);
-            if name.ends_with("reflect") || name.ends_with("color") || name.ends_with("transmit") {
-                set(&mut scene, name, &format!("{:.3}", random.unit()));
-            }
+            set(&mut scene, random.pick(&names), &format!("{:.3}", random.unit()));
         }
         scene.materials[step % 3].shininess = 5.0 + step as f32;
         session.edit(scene, &Progress::default()).unwrap();
