@@ -224,3 +224,180 @@ impl Walk<'_> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::forest::tree::Ends;
+    use crate::progress::Progress;
+    use crate::scene::read;
+    use crate::session::{Options, Session};
+
+    fn session() -> Session {
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/glass.toml");
+        let mut scene = read::file(&file).unwrap();
+        scene.picture.size = [37, 9];
+        scene.trace.samples = 2;
+        let options = Options { threads: 2, memory: 1 << 30 };
+        Session::open(scene, options, &Progress::default()).unwrap()
+    }
+
+    /// A fault by its words, and what makes it.
+    type Case<T> = (&'static str, fn(&mut T));
+
+    /// Holds `check` to finding every fault in something sound.
+    fn hold<T: Clone>(sound: &T, cases: &[Case<T>], check: impl Fn(&T) -> Result<(), Unsound>) {
+        assert_eq!(check(sound), Ok(()));
+        for (words, harm) in cases {
+            let mut harmed = sound.clone();
+            harm(&mut harmed);
+            assert_eq!(check(&harmed), Err(*words));
+        }
+    }
+
+    /// The singles of the first block that has five.
+    fn five(tile: &mut TransportTile) -> &mut [Single] {
+        let ends = tile.starts.windows(2).map(|s| s[0].single as usize..s[1].single as usize);
+        let range = ends.into_iter().find(|range| range.len() >= 5).unwrap();
+        &mut tile.singles[range]
+    }
+
+    #[test]
+    fn faults_of_a_matrix_are_found() {
+        let session = session();
+        let terms = session.transport().trie.nodes().len();
+        let cases: [Case<TransportTile>; 14] = [
+            ("the dictionary is out of order", |t| t.terms.swap(0, 1)),
+            ("the dictionary has an unknown term", |t| t.terms.push(1 << 30)),
+            ("not one plane per entry", |t| _ = t.planes.pop()),
+            ("not 64 blocks", |t| _ = t.starts.pop()),
+            ("blocks are out of order", |t| t.starts[3].plane = u32::MAX),
+            ("blocks are out of order", |t| t.starts[0].single = u32::MAX),
+            ("blocks leave something out", |t| t.starts[TILE_BLOCKS].single += 1),
+            ("an unknown entry", |t| t.entries[0] = t.terms.len() as u32),
+            ("an unknown entry of a single", |t| t.singles[0].place = u32::MAX),
+            ("entries are out of order", |t| t.entries.swap(0, 1)),
+            ("singles are out of order", |t| five(t).swap(2, 3)),
+            ("singles of many lanes", |t| {
+                let entry = five(t)[0].entry() as u32;
+                let place = |lane| Single::new(entry, lane, 0.0).place;
+                (0..5).for_each(|lane| five(t)[lane].place = place(lane));
+            }),
+            ("a coefficient is not finite", |t| t.planes[0].0[7] = f32::NAN),
+            ("a coefficient is not finite", |t| t.singles[0].coefficient = f32::INFINITY),
+        ];
+        hold(&session.transport().tiles[0], &cases, |tile| matrix(tile, terms));
+    }
+
+    #[test]
+    fn faults_of_highlight_lists_are_found() {
+        let session = session();
+        let tile = &session.transport().tiles[0];
+        let cases: [Case<Highlights>; 11] = [
+            ("a highlight of no lane", |h| h.lists[0].mask = 0),
+            ("a highlight of an unknown material", |h| h.lists[0].material = u16::MAX),
+            ("a highlight of no plane", |h| h.lists[0].at = u32::MAX >> 1),
+            ("a highlight of no singles", |h| h.lists[0].at = u32::MAX),
+            ("a highlight of other lanes", |h| {
+                let some = |l: &&mut HighlightList| l.at & HighlightList::SINGLE != 0;
+                let list = h.lists.iter_mut().find(some).unwrap();
+                list.mask = list.mask.rotate_left(1);
+            }),
+            ("not one count per lane of every highlight", |h| h.counts.push(1)),
+            ("a lane without samples", |h| h.counts[0] = 0),
+            ("highlights of another number of samples", |h| h.counts[0] += 1),
+            ("highlights of another number of samples", |h| h.log2_cosines.push(-1.0)),
+            ("a cosine above 1", |h| h.log2_cosines[9] = 0.1),
+            ("a cosine above 1", |h| h.log2_cosines[9] = f32::NAN),
+        ];
+        let materials = session.scene().materials.len();
+        let lists = tile.highlights.as_ref().unwrap();
+        hold(lists, &cases, |lists| highlights(lists, tile, materials));
+    }
+
+    #[test]
+    fn faults_of_terms_are_found() {
+        let session = session();
+        fn below_last(trie: &mut Trie, factor: Factor) {
+            let mut nodes = trie.nodes().to_vec();
+            let parent = nodes.len() as u32 - 1;
+            nodes.push(TrieNode { parent, factor, marks: Marks::default() });
+            *trie = Trie::from_canonical(nodes).unwrap();
+        }
+        let cases: [Case<Trie>; 7] = [
+            ("a term has a factor of nothing", |t| {
+                below_last(t, Factor::new(Kind::Diffuse, u16::MAX, 0));
+            }),
+            ("a term has a factor of nothing", |t| below_last(t, Factor::new(Kind::Light, 99, 0))),
+            ("a term has a factor of nothing", |t| below_last(t, Factor::new(Kind::Ambient, 0, 9))),
+            ("a term has a factor of nothing", |t| below_last(t, Factor::new(Kind::Channel, 3, 0))),
+            ("a path goes on behind light", |t| below_last(t, Factor::new(Kind::Reflect, 0, 0))),
+            ("a frontier that is no path", |t| {
+                below_last(t, Factor::new(Kind::Shadow, 0, 0));
+                t.mark(t.nodes().len() as u32 - 1, Marks::FRONTIER);
+            }),
+            ("a witness that is no shadow", |t| {
+                below_last(t, Factor::new(Kind::Channel, 0, 0));
+                t.mark(t.nodes().len() as u32 - 1, Marks::WITNESS);
+            }),
+        ];
+        hold(&session.transport().trie, &cases, |terms| trie(terms, session.scene()));
+    }
+
+    #[test]
+    fn faults_of_trees_are_found() {
+        let session = session();
+        let cases: [Case<TileTrees>; 17] = [
+            ("not 64 blocks", |t| _ = t.blocks.pop()),
+            ("a block starts elsewhere than its samples", |t| t.blocks[1].node += 1),
+            ("trees end too early", |t| _ = t.hits.pop()),
+            ("trees end too early", |t| _ = t.nodes.pop()),
+            ("trees end too early", |t| _ = t.lights.pop()),
+            ("something is left over", |t| t.hits.push(false)),
+            ("something is left over", |t| t.crossings.push(0)),
+            ("a distance is not above 0", |t| t.nodes[5].t = f64::NAN),
+            ("an unknown primitive", |t| t.nodes[5].primitive = u32::MAX),
+            ("a surface of another material", |t| t.nodes[5].material += 1),
+            ("an unknown slot", |t| t.nodes[5].slot = 2),
+            ("branches that no surface has", |t| {
+                t.nodes[5].ends = Ends::new(Branch::Absent, Branch::Missed, false);
+            }),
+            ("branches that no surface has", |t| {
+                t.nodes[5].ends = Ends::new(Branch::Missed, Branch::Missed, true);
+            }),
+            ("an unknown light", |t| t.lights[0].light = 99),
+            ("a cosine is not finite", |t| t.lights[0].n_dot_l = f32::INFINITY),
+            ("crossings out of order", |t| t.crossings[0] = u16::MAX),
+            ("lights out of order", |t| {
+                let several = t.nodes.iter().scan(0, |from, node| {
+                    let own = (*from, node.lights);
+                    *from += usize::from(node.lights);
+                    Some(own)
+                });
+                let (from, _) = several.into_iter().find(|(_, lights)| *lights > 1).unwrap();
+                t.lights[from + 1].light = t.lights[from].light;
+            }),
+        ];
+        let within = Surroundings::new(session.scene(), session.geometry());
+        let trees = session.forest().tiles[0].as_ref().unwrap();
+        hold(trees, &cases, |trees| within.trees(trees, 0));
+        // The second tile has fewer pixels.
+        assert!(within.trees(trees, 1).is_err());
+    }
+
+    #[test]
+    fn a_tree_deeper_than_any_limit_is_found() {
+        let mut session = session();
+        let trees = session.forest.tiles[1].as_mut().unwrap();
+        let at = trees.hits.iter().position(|hit| *hit).unwrap();
+        let ends = Ends::new(Branch::Grown, Branch::Zero, false);
+        let first = Node { lights: 0, ends, ..trees.nodes[0] };
+        assert_eq!(at, 0, "the first sample meets the scene");
+        let mut deep = TileTrees { hits: trees.hits.clone(), ..TileTrees::default() };
+        deep.nodes = vec![first; 100];
+        deep.blocks = vec![Start::default(); TILE_BLOCKS];
+        let trees = deep;
+        let within = Surroundings::new(session.scene(), session.geometry());
+        assert_eq!(within.trees(&trees, 1), Err("a tree deeper than the deepest limit"));
+    }
+}

@@ -37,8 +37,8 @@ fn scene() -> Scene {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/glass.toml");
     let mut scene = scene_text::file(&file).unwrap();
     scene.picture.size = [37, 35];
-    scene.trace.samples = 2;
-    scene.trace.depth = 4;
+    scene.trace.samples = 1;
+    scene.trace.depth = 3;
     scene
 }
 
