@@ -64,6 +64,11 @@ impl Layout {
         (x < self.size[0] && y < self.size[1]).then_some([x, y])
     }
 
+    /// Which lanes of a block hold a pixel.
+    pub fn covered(self, tile: usize, block: usize) -> [bool; LANES] {
+        std::array::from_fn(|lane| self.pixel(Place { tile, block, lane }).is_some())
+    }
+
     /// Where the pixel (x, y) lies.
     ///
     /// # Panics

@@ -2,6 +2,7 @@
 //! of parameters.
 
 pub mod highlight;
+pub mod merge;
 #[cfg(test)]
 mod tests;
 pub mod transport;
@@ -9,7 +10,8 @@ pub mod trie;
 
 use highlight::HighlightPower;
 use transport::{
-    BlockStart, HighlightList, Highlights, Plane, SPARSE_LANES, Single, TransportTile,
+    BlockStart, Frontier, FrontierMark, HighlightList, Highlights, Plane, SPARSE_LANES, Single,
+    TransportTile,
 };
 use trie::{Marks, ROOT, Trie};
 
@@ -41,6 +43,11 @@ pub struct Folder {
     starts: Vec<u32>,
     highlights: Vec<HighlightSample>,
     highlight_starts: Vec<u32>,
+    /// Where branches ended, block after block; `slots` finds them too.
+    edges: Vec<Edge>,
+    edge_starts: Vec<u32>,
+    /// Materials that a shadow ray crossed, rising.
+    filters: Vec<u16>,
     order: Vec<u32>,
     sorted: Vec<HighlightSample>,
     power: HighlightPower,
@@ -64,6 +71,30 @@ struct HighlightSample {
     material: u16,
     lane: u16,
     one_minus_cosine: f32,
+}
+
+/// A term of the frontier in a block, by its id in the tile's own trie.
+#[derive(Clone, Copy)]
+struct Edge {
+    id: u32,
+    mask: u16,
+    rays: u16,
+}
+
+/// Which factors stand for a scene's solids and lights.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Names {
+    /// Per solid its material.
+    pub materials: Vec<u16>,
+    /// Per light its place in the list of factors: rising, but not without gaps.
+    pub lights: Vec<u16>,
+}
+
+impl Names {
+    /// Of solids with these materials, and of a number of lights without gaps.
+    pub fn new(materials: &[u16], lights: usize) -> Names {
+        Names { materials: materials.to_vec(), lights: (0..).take(lights).collect() }
+    }
 }
 
 /// A tile just folded: its part of the matrix in ids of its own trie, and that trie.
@@ -90,15 +121,24 @@ impl Folder {
         self.highlights.clear();
         self.highlight_starts.clear();
         self.highlight_starts.push(0);
+        self.edges.clear();
+        self.edge_starts.clear();
+        self.edge_starts.push(0);
     }
 
     /// Folds the trees of a block: `samples` of each lane that `covered` says to hold a pixel.
-    pub fn block(&mut self, reader: &mut Reader, covered: [bool; LANES], samples: u32) {
+    pub fn block(
+        &mut self,
+        reader: &mut Reader,
+        covered: [bool; LANES],
+        samples: u32,
+        names: &Names,
+    ) {
         for (lane, _) in covered.iter().enumerate().filter(|(_, c)| **c) {
             for _ in 0..samples {
                 self.position = 0;
                 if reader.sample() {
-                    self.tree(reader, lane);
+                    self.tree(reader, lane, names);
                 } else {
                     self.background(ROOT, lane);
                 }
@@ -124,18 +164,19 @@ impl Folder {
         self.places.resize(self.ids.len(), 0);
         self.starts.push(self.ids.len() as u32);
         self.highlight_starts.push(self.highlights.len() as u32);
+        self.edge_starts.push(self.edges.len() as u32);
     }
 
     /// Adds the terms of one tree to a lane.
     #[inline(always)]
-    fn tree(&mut self, reader: &mut Reader, lane: usize) {
+    fn tree(&mut self, reader: &mut Reader, lane: usize, names: &Names) {
         self.stack.push(ROOT);
         while let Some(path) = self.stack.pop() {
             let node = reader.node();
             self.add(path, Factor::new(Kind::Ambient, node.material, node.slot), lane, 1.0);
             for _ in 0..node.lights {
                 let (hit, crossed) = reader.light();
-                self.light(path, node, hit, crossed, lane);
+                self.light(path, node, (hit, crossed), lane, names);
             }
             let mirror = if node.ends.total() { Kind::TotalReflect } else { Kind::Reflect };
             let transmit = Factor::new(Kind::Transmit, node.material, 0);
@@ -146,18 +187,27 @@ impl Folder {
     }
 
     #[inline(always)]
-    fn light(&mut self, path: u32, node: &Node, hit: &LightHit, crossed: &[u16], lane: usize) {
+    fn light(
+        &mut self,
+        path: u32,
+        node: &Node,
+        (hit, crossed): (&LightHit, &[u32]),
+        lane: usize,
+        names: &Names,
+    ) {
         if hit.crossed == BLOCKED {
-            let witness = self.find(path, Factor::new(Kind::Shadow, crossed[0], 0));
-            self.trie.mark(witness, Marks::WITNESS);
+            let material = names.materials[crossed[0] as usize];
+            let witness = self.find(path, Factor::new(Kind::Shadow, material, 0));
+            self.edge(witness, lane, Marks::WITNESS);
             return;
         }
         if hit.n_dot_l <= 0.0 {
             return;
         }
-        let mut arriving = self.find(path, Factor::new(Kind::Light, hit.light, 0));
-        for &material in crossed {
-            arriving = self.find(arriving, Factor::new(Kind::Shadow, material, 0));
+        let light = names.lights[hit.light as usize];
+        let mut arriving = self.find(path, Factor::new(Kind::Light, light, 0));
+        if !crossed.is_empty() {
+            arriving = self.filtered(arriving, crossed, names);
         }
         let diffuse = Factor::new(Kind::Diffuse, node.material, node.slot);
         self.add(arriving, diffuse, lane, hit.n_dot_l);
@@ -173,6 +223,36 @@ impl Folder {
         }
     }
 
+    /// `arriving` times what the solids let through, by rising material.
+    fn filtered(&mut self, mut arriving: u32, crossed: &[u32], names: &Names) -> u32 {
+        let mut filters = std::mem::take(&mut self.filters);
+        filters.clear();
+        filters.extend(crossed.iter().map(|&solid| names.materials[solid as usize]));
+        filters.sort_unstable();
+        for &material in &filters {
+            arriving = self.find(arriving, Factor::new(Kind::Shadow, material, 0));
+        }
+        self.filters = filters;
+        arriving
+    }
+
+    /// Notes that a branch or a shadow ray ended at a term.
+    #[inline(always)]
+    fn edge(&mut self, id: u32, lane: usize, marks: Marks) {
+        if self.slots.len() <= id as usize {
+            self.slots.resize(self.trie.nodes().len(), (0, 0));
+        }
+        let (stamp, slot) = &mut self.slots[id as usize];
+        if *stamp != self.stamp {
+            (*stamp, *slot) = (self.stamp, self.edges.len() as u32);
+            self.edges.push(Edge { id, mask: 0, rays: 0 });
+            self.trie.mark(id, marks);
+        }
+        let edge = &mut self.edges[*slot as usize];
+        edge.mask |= 1 << lane;
+        edge.rays = edge.rays.saturating_add(1);
+    }
+
     #[inline(always)]
     fn branch(&mut self, path: u32, branch: Branch, factor: Factor, lane: usize) {
         if branch == Branch::Absent {
@@ -182,7 +262,7 @@ impl Folder {
         match branch {
             Branch::Grown => self.stack.push(child),
             Branch::Missed => self.background(child, lane),
-            _ => self.trie.mark(child, Marks::FRONTIER),
+            _ => self.edge(child, lane, Marks::FRONTIER),
         }
     }
 
@@ -281,6 +361,7 @@ impl Folder {
         tile.planes.reserve_exact(many.len());
         tile.singles.reserve_exact(few.iter().sum::<u32>() as usize);
         let mut order: Vec<(u32, u32)> = Vec::new();
+        tile.frontier = self.frontier(&ranks);
         for block in 0..self.starts.len() - 1 {
             let slots = self.starts[block]..self.starts[block + 1];
             order.clear();
@@ -316,6 +397,28 @@ impl Folder {
         let lanes = (0..LANES).filter(|i| mask >> i & 1 != 0);
         tile.singles.extend(lanes.map(|i| Single::new(entry, i, sums[i] * weight)));
         at | HighlightList::SINGLE
+    }
+
+    /// Where branches ended, in canonical order.
+    fn frontier(&self, ranks: &[u32]) -> Frontier {
+        let mut terms: Vec<u32> = self.edges.iter().map(|edge| edge.id).collect();
+        terms.sort_unstable_by_key(|&id| ranks[id as usize]);
+        terms.dedup();
+        terms.shrink_to_fit();
+        let mut local = vec![0; self.trie.nodes().len()];
+        for (&id, index) in terms.iter().zip(0u32..) {
+            local[id as usize] = index;
+        }
+        let mut marks: Vec<FrontierMark> = Vec::with_capacity(self.edges.len());
+        for ends in self.edge_starts.windows(2) {
+            let first = marks.len();
+            marks.extend(self.edges[ends[0] as usize..ends[1] as usize].iter().map(|edge| {
+                let Edge { id, mask, rays } = *edge;
+                FrontierMark { entry: local[id as usize], mask, rays }
+            }));
+            marks[first..].sort_unstable_by_key(|mark| mark.entry);
+        }
+        Frontier { terms, starts: self.edge_starts.clone(), marks }
     }
 
     /// Fills `tile.terms` with the ids that have coefficients, in canonical order, and gives for

@@ -32,14 +32,19 @@ fn block(mirrors: usize) -> TileTrees {
         }
         trees.sample(false);
     }
-    trees.validate(3, 1);
+    trees.validate(3, 3, 1);
     trees
+}
+
+/// Solid i is of material i.
+fn names() -> Names {
+    Names::new(&[0, 1, 2], 1)
 }
 
 fn folded(trees: &TileTrees) -> (Trie, TransportTile) {
     let mut folder = Folder::default();
     folder.begin_tile();
-    folder.block(&mut trees.read(0), ALL, 2);
+    folder.block(&mut trees.read(0), ALL, 2, &names());
     let shininess = [Some(8.0), Some(2.0), Some(1.0)];
     let Folded { trie, tile } = folder.finish_tile(0.5, &shininess);
     (trie.clone(), tile)
@@ -133,7 +138,7 @@ fn a_new_exponent_gives_what_a_fresh_fold_gives() {
     let (_, mut kept) = folded(&trees);
     let mut folder = Folder::default();
     folder.begin_tile();
-    folder.block(&mut trees.read(0), ALL, 2);
+    folder.block(&mut trees.read(0), ALL, 2, &names());
     let exponents = [Some(8.0), Some(31.0), Some(1.0)];
     let fresh = folder.finish_tile(0.5, &exponents).tile;
     assert_ne!(kept, fresh);

@@ -2,6 +2,7 @@
 
 use super::trie::Trie;
 use crate::film::layout::{LANES, Layout, TILE_BLOCKS};
+use crate::scene::factor::Factor;
 
 /// The coefficients of one term for the 16 pixels of a block.
 #[repr(align(64))]
@@ -50,6 +51,59 @@ pub struct TransportTile {
     pub singles: Vec<Single>,
     /// What highlights need for another exponent; `None` where it was released for memory.
     pub highlights: Option<Highlights>,
+    /// Where its trees end.
+    pub frontier: Frontier,
+}
+
+/// Which pixels of a tile a term of the frontier concerns: were it alive, their trees would grow.
+///
+/// # Invariants
+/// `terms` rises, and so do the entries of a block; `starts` has one more element than the tile has
+/// blocks.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frontier {
+    /// Ids of the terms at which branches or shadow rays of the tile end.
+    pub terms: Vec<u32>,
+    /// Where each block's marks begin, and the end.
+    pub starts: Vec<u32>,
+    /// Block by block.
+    pub marks: Vec<FrontierMark>,
+}
+
+/// The pixels of a block in which branches or shadow rays end at a term: 8 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrontierMark {
+    /// Index into `terms`.
+    pub entry: u32,
+    /// Bit i is set for lane i.
+    pub mask: u16,
+    /// How many end there, 65 535 standing for more.
+    pub rays: u16,
+}
+
+impl Frontier {
+    /// The marks of one block.
+    #[inline(always)]
+    pub fn block(&self, block: usize) -> &[FrontierMark] {
+        &self.marks[self.starts[block] as usize..self.starts[block + 1] as usize]
+    }
+
+    /// Allocated bytes.
+    pub fn bytes(&self) -> usize {
+        let Frontier { terms, starts, marks } = self;
+        (terms.capacity() + starts.capacity()) * 4 + marks.capacity() * size_of::<FrontierMark>()
+    }
+
+    fn validate(&self, terms: usize) {
+        assert!(self.terms.is_sorted_by(|a, b| a < b), "frontier out of order");
+        assert!(self.terms.iter().all(|&t| (t as usize) < terms), "unknown term of the frontier");
+        assert_eq!(self.starts.len(), TILE_BLOCKS + 1, "64 blocks");
+        for marks in (0..TILE_BLOCKS).map(|b| self.block(b)) {
+            assert!(marks.is_sorted_by(|a, b| a.entry < b.entry), "marks out of order");
+            let known = |m: &FrontierMark| (m.entry as usize) < self.terms.len();
+            assert!(marks.iter().all(|m| known(m) && m.mask != 0 && m.rays > 0), "empty mark");
+        }
+    }
 }
 
 /// A position in the arrays of a [`TransportTile`].
@@ -139,6 +193,19 @@ impl Transport {
         self.tiles.iter().filter_map(|t| t.highlights.as_ref()).map(Highlights::bytes).sum()
     }
 
+    /// Gives materials other indices, in the same order: `index` has one for every index of today.
+    pub fn rename_materials(&mut self, index: &[u16]) {
+        self.trie.rename(|factor| match factor.is_of_material() {
+            true => Factor::new(factor.kind(), index[factor.index()], factor.slot() as u8),
+            false => factor,
+        });
+        for highlights in self.tiles.iter_mut().filter_map(|tile| tile.highlights.as_mut()) {
+            for list in &mut highlights.lists {
+                list.material = index[list.material as usize];
+            }
+        }
+    }
+
     /// Checks every invariant. Panics with what is wrong.
     pub fn validate(&self) {
         assert_eq!(self.tiles.len(), self.layout.tiles(), "one part per tile");
@@ -151,8 +218,10 @@ impl Transport {
 impl TransportTile {
     /// Allocated bytes without highlights.
     pub fn bytes(&self) -> usize {
-        let TransportTile { terms, starts, entries, planes, singles, highlights: _ } = self;
-        (terms.capacity() + entries.capacity()) * 4
+        let TransportTile { terms, starts, entries, planes, singles, highlights: _, frontier } =
+            self;
+        frontier.bytes()
+            + (terms.capacity() + entries.capacity()) * 4
             + starts.capacity() * size_of::<BlockStart>()
             + planes.capacity() * size_of::<Plane>()
             + singles.capacity() * size_of::<Single>()
@@ -168,6 +237,17 @@ impl TransportTile {
             planes: &self.planes[planes],
             singles: &self.singles[from.single as usize..to.single as usize],
         }
+    }
+
+    /// Gives its terms other ids, in the same order.
+    pub fn renumber(&mut self, id: impl Fn(u32) -> u32) {
+        let own = self.terms.iter_mut().chain(&mut self.frontier.terms);
+        own.for_each(|term| *term = id(*term));
+    }
+
+    /// Where the next block's parts would begin.
+    pub(super) fn end(&self) -> BlockStart {
+        BlockStart { plane: self.planes.len() as u32, single: self.singles.len() as u32 }
     }
 
     fn validate(&self, terms: usize) {
@@ -188,6 +268,7 @@ impl TransportTile {
             let mut all = coefficients.chain(singles.iter().map(|s| s.coefficient));
             assert!(all.all(f32::is_finite), "a coefficient is not finite");
         }
+        self.frontier.validate(terms);
         if let Some(Highlights { lists, counts, log2_cosines }) = &self.highlights {
             let lanes: u32 = lists.iter().map(|l| l.mask.count_ones()).sum();
             assert_eq!(lanes as usize, counts.len(), "a count per lane of every highlight");

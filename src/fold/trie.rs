@@ -1,6 +1,6 @@
 //! Terms as a tree of factors: a term is a parent times one factor.
 
-use crate::scene::factor::Factor;
+use crate::scene::factor::{Factor, Kind};
 
 /// The empty product: the root of every trie.
 pub const ROOT: u32 = 0;
@@ -56,6 +56,16 @@ pub struct TrieNode {
     pub marks: Marks,
 }
 
+impl TrieNode {
+    /// What it is there for if trees end at it.
+    pub fn end_mark(&self) -> Marks {
+        match self.factor.kind() {
+            Kind::Shadow => Marks::WITNESS,
+            _ => Marks::FRONTIER,
+        }
+    }
+}
+
 /// Products of factors, each stored once, parents before children.
 ///
 /// # Invariants
@@ -69,7 +79,7 @@ pub struct Trie {
 }
 
 const EMPTY: u32 = u32::MAX;
-const NO_FACTOR: Factor = Factor::new(crate::scene::factor::Kind::Background, 0, 0);
+const NO_FACTOR: Factor = Factor::new(Kind::Background, 0, 0);
 
 impl Default for Trie {
     fn default() -> Trie {
@@ -182,6 +192,40 @@ impl Trie {
         ranks
     }
 
+    /// Exchanges factors for others in the same order. The result cannot be added to.
+    pub fn rename(&mut self, other: impl Fn(Factor) -> Factor) {
+        self.nodes.iter_mut().skip(1).for_each(|node| node.factor = other(node.factor));
+        self.table = Vec::new();
+    }
+
+    /// The same terms, to be added to.
+    pub fn growing(&self) -> Trie {
+        let mut trie = Trie { nodes: self.nodes.clone(), table: Vec::new() };
+        trie.rehash((self.nodes.len() * 4).next_power_of_two().max(256));
+        trie
+    }
+
+    /// The terms that `used` marks, and those that lead to them, with these marks; and the new id of
+    /// every one of them. The order stays. The result cannot be added to.
+    pub fn only(&self, used: &[Marks]) -> (Trie, Vec<u32>) {
+        let none = Marks::default();
+        let mut needed: Vec<bool> = used.iter().map(|&marks| marks != none).collect();
+        needed[ROOT as usize] = true;
+        for (id, node) in self.nodes.iter().enumerate().rev() {
+            if needed[id] {
+                needed[node.parent as usize] = true;
+            }
+        }
+        let mut ids = vec![0; self.nodes.len()];
+        let mut nodes = Vec::new();
+        for (id, node) in self.nodes.iter().enumerate().filter(|(id, _)| needed[*id]) {
+            ids[id] = nodes.len() as u32;
+            let parent = ids[node.parent as usize];
+            nodes.push(TrieNode { parent, marks: used[id], ..*node });
+        }
+        (Trie { nodes, table: Vec::new() }, ids)
+    }
+
     /// Renumbers by `ranks` (from [`Trie::canonical_ranks`]). The result cannot be added to.
     pub fn renumbered(&self, ranks: &[u32]) -> Trie {
         let mut nodes = self.nodes.clone();
@@ -234,7 +278,6 @@ fn hash(parent: u32, factor: Factor) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::factor::Kind;
 
     fn f(kind: Kind, index: u16) -> Factor {
         Factor::new(kind, index, 0)

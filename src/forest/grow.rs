@@ -6,13 +6,15 @@ use fearless_simd::{Level, Simd, dispatch};
 use glam::DVec3;
 
 use super::camera::View;
+use super::kept::{Met, Recall, Recalled};
+use super::media::{Crossing, Media};
 use super::sampling;
 use super::tree::{BLOCKED, Branch, Ends, LightHit, Node};
 use crate::film::layout::{LANES, Layout, Place};
 use crate::geometry::{Geometry, Hit, Interaction, Leaving, Ray, Stack};
 use crate::progress::{Cancelled, Progress};
 use crate::scene::factor::{End, Factor, FactorValues, Kind, PathWeight};
-use crate::scene::{LightPlace, Scene};
+use crate::scene::{LightPlace, Material, Scene};
 
 /// What receives the trees: storage, or nothing, so that tracing with and without keeping is the
 /// same code. Nodes arrive in preorder, a node's lights right after it.
@@ -28,7 +30,7 @@ pub trait Sink {
     /// The ray of this branch of a node left the scene.
     fn missed(&mut self, node: u32, side: Side);
     /// A light in front of the last node.
-    fn light(&mut self, hit: LightHit, crossed: &[u16]);
+    fn light(&mut self, hit: LightHit, crossed: &[u32]);
 }
 
 /// Drops what it is given.
@@ -49,7 +51,7 @@ impl Sink for Discard {
     #[inline(always)]
     fn missed(&mut self, _: u32, _: Side) {}
     #[inline(always)]
-    fn light(&mut self, _: LightHit, _: &[u16]) {}
+    fn light(&mut self, _: LightHit, _: &[u32]) {}
 }
 
 /// Why growing stopped before its end.
@@ -95,6 +97,16 @@ pub struct RayCounts {
 }
 
 impl RayCounts {
+    /// Counts a ray of the seen path: from the eye, or of a node's branch.
+    #[inline(always)]
+    fn count(&mut self, branch: Option<Side>) {
+        match branch {
+            None => self.camera += 1,
+            Some(Side::Reflected) => self.reflected += 1,
+            Some(Side::Transmitted) => self.transmitted += 1,
+        }
+    }
+
     /// Rays of every kind.
     pub fn total(self) -> u64 {
         self.camera + self.reflected + self.transmitted + self.shadow
@@ -115,10 +127,18 @@ impl AddAssign for RayCounts {
 pub struct Grower<'a> {
     geometry: &'a Geometry,
     values: FactorValues,
+    /// Per solid.
     opaque: Vec<bool>,
     /// Directions are of length 1.
     lights: Vec<LightPlace>,
+    /// Per light the key of its records in kept trees.
+    keys: Vec<u16>,
+    /// Per material whether its index of refraction matters.
+    bends: Vec<bool>,
+    /// Per solid.
     iors: Vec<f64>,
+    /// Per solid the index of refraction with which the kept trees were grown.
+    iors_before: Vec<f64>,
     view: View,
     layout: Layout,
     samples: u32,
@@ -129,9 +149,9 @@ pub struct Grower<'a> {
 pub struct Worker {
     stack: Stack,
     pending: Vec<Pending>,
-    crossed: Vec<u16>,
+    crossed: Vec<u32>,
     media: Media,
-    /// Rays that this worker cast.
+    /// Rays that this worker cast: what kept trees answer is not cast.
     pub rays: RayCounts,
 }
 
@@ -149,23 +169,78 @@ struct Pending {
     path: PathWeight,
     parent: Option<(u32, Side)>,
     medium: u32,
+    known: Known,
+}
+
+/// What kept trees know of a ray.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Known {
+    /// Nothing: it is cast.
+    Nothing,
+    /// Its node is the next one of the kept trees.
+    Hit,
+    /// It left the scene.
+    Missed,
+    /// Nothing, but the next node of the kept trees, and all below it, is of no use: in its place
+    /// stood another ray.
+    Another,
+    /// It is followed no longer: the next node, and all below it, is of no use.
+    Dropped,
+}
+
+/// What kept trees know of the rays of a node's branch, in front of which the same ray arrived. `ray`
+/// says whether the branch's ray is the same too, `followed` whether it is wanted.
+fn known(before: Option<Branch>, ray: bool, followed: bool) -> Known {
+    match before {
+        Some(Branch::Grown) if !followed => Known::Dropped,
+        Some(Branch::Grown) if ray => Known::Hit,
+        Some(Branch::Grown) => Known::Another,
+        Some(Branch::Missed) if ray => Known::Missed,
+        _ => Known::Nothing,
+    }
 }
 
 impl<'a> Grower<'a> {
     /// Prepares to trace `scene`, of which `geometry` was built.
     pub fn new(scene: &Scene, geometry: &'a Geometry) -> Grower<'a> {
+        let keys = (0..).take(scene.lights.len()).collect();
+        let iors: Vec<f64> = scene.materials.iter().map(|m| m.ior).collect();
+        Grower::recalling(scene, geometry, keys, &geometry.of_solids(&iors))
+    }
+
+    /// The same, where kept trees may answer in place of rays: `keys` are the keys of the lights'
+    /// records in them, and `iors_before` has for every solid the index of refraction with which
+    /// they were grown.
+    ///
+    /// Kept trees answer for the same ray, found by the same path through the same media; a shadow
+    /// ray's answer stands as long as its blocker is opaque.
+    pub fn recalling(
+        scene: &Scene,
+        geometry: &'a Geometry,
+        keys: Vec<u16>,
+        iors_before: &[f64],
+    ) -> Grower<'a> {
         let values = FactorValues::new(scene);
+        let iors: Vec<f64> = scene.materials.iter().map(|m| m.ior).collect();
         Grower {
             geometry,
-            opaque: values.opaque(),
+            opaque: geometry.of_solids(&values.opaque()),
             values,
             lights: scene.lights.iter().map(|l| with_unit_direction(&l.place)).collect(),
-            iors: scene.materials.iter().map(|m| m.ior).collect(),
+            keys,
+            bends: scene.materials.iter().map(Material::ior_matters).collect(),
+            iors: geometry.of_solids(&iors),
+            iors_before: iors_before.to_vec(),
             view: View::new(&scene.camera, scene.picture.size),
             layout: Layout::new(scene.picture.size),
             samples: scene.trace.samples,
             level: Level::new(),
         }
+    }
+
+    /// Per light the key of its records in kept trees.
+    pub fn keys(&self) -> &[u16] {
+        &self.keys
     }
 
     /// Scratch for one thread.
@@ -184,7 +259,21 @@ impl<'a> Grower<'a> {
     pub fn block<K: Sink>(
         &self,
         worker: &mut Worker,
+        at: (usize, usize),
+        sink: &mut K,
+        most: usize,
+        progress: &Progress,
+    ) -> Result<(), Stop> {
+        self.block_again(worker, at, None, sink, most, progress)
+    }
+
+    /// The same from kept trees of the block, if there are any: only rays of which they know
+    /// nothing are cast. Gives what [`Grower::block`] gives.
+    pub fn block_again<K: Sink>(
+        &self,
+        worker: &mut Worker,
         (tile, block): (usize, usize),
+        mut kept: Option<Recall<'_>>,
         sink: &mut K,
         most: usize,
         progress: &Progress,
@@ -194,7 +283,8 @@ impl<'a> Grower<'a> {
         sink.block();
         for lane in 0..LANES {
             if let Some(pixel) = self.layout.pixel(Place { tile, block, lane }) {
-                dispatch!(self.level, simd => self.pixel(simd, worker, pixel, sink, limits))?;
+                let kept = &mut kept;
+                dispatch!(self.level, simd => self.pixel(simd, worker, pixel, kept, sink, limits))?;
             }
         }
         Ok(())
@@ -206,13 +296,14 @@ impl<'a> Grower<'a> {
         simd: S,
         worker: &mut Worker,
         pixel: [u32; 2],
+        kept: &mut Option<Recall<'_>>,
         sink: &mut K,
         limits: Limits,
     ) -> Result<(), Stop> {
         for index in 0..self.samples {
             let [u, v] = sampling::in_pixel(pixel, index, self.samples);
             let ray = self.view.ray(f64::from(pixel[0]) + u, f64::from(pixel[1]) + v);
-            self.sample(simd, worker, ray, sink, limits)?;
+            self.sample(simd, worker, ray, kept, sink, limits)?;
         }
         Ok(())
     }
@@ -224,17 +315,23 @@ impl<'a> Grower<'a> {
         simd: S,
         worker: &mut Worker,
         ray: Ray,
+        kept: &mut Option<Recall<'_>>,
         sink: &mut K,
         limits: Limits,
     ) -> Result<(), Stop> {
         worker.media.clear();
-        worker.rays.camera += 1;
+        let known = match kept.as_mut().map(Recall::sample) {
+            None => Known::Nothing,
+            Some(true) => Known::Hit,
+            Some(false) => Known::Missed,
+        };
         let root = Pending {
             ray,
             leaving: None,
             path: PathWeight::EYE,
             parent: None,
             medium: Media::OUTSIDE,
+            known,
         };
         worker.pending.push(root);
         while let Some(next) = worker.pending.pop() {
@@ -242,13 +339,28 @@ impl<'a> Grower<'a> {
             if sink.bytes() > limits.most {
                 return Err(Stop::Branches);
             }
-            let hit = self.geometry.closest_hit(simd, &mut worker.stack, &next.ray, next.leaving);
+            if let (Known::Another | Known::Dropped, Some(kept)) = (next.known, kept.as_mut()) {
+                kept.skip();
+            }
+            let recalled = match next.known {
+                Known::Dropped => continue,
+                Known::Hit => kept.as_mut().map(Recall::node),
+                _ => None,
+            };
+            let hit = match (recalled, next.known) {
+                (Some(r), _) => Some(Hit { t: r.node.t, primitive: r.node.primitive }),
+                (None, Known::Missed) => None,
+                (None, _) => {
+                    worker.rays.count(next.parent.map(|(_, side)| side));
+                    self.geometry.closest_hit(simd, &mut worker.stack, &next.ray, next.leaving)
+                }
+            };
             match (hit, next.parent) {
                 (Some(hit), parent) => {
                     if parent.is_none() {
                         sink.sample(true);
                     }
-                    self.node(simd, worker, &next, hit, sink)?;
+                    self.node(simd, worker, &next, (hit, recalled), sink)?;
                 }
                 (None, Some((node, side))) => sink.missed(node, side),
                 (None, None) => sink.sample(false),
@@ -264,56 +376,80 @@ impl<'a> Grower<'a> {
         simd: S,
         worker: &mut Worker,
         from: &Pending,
-        hit: Hit,
+        (hit, mut recalled): (Hit, Option<Recalled<'_>>),
         sink: &mut K,
     ) -> Result<(), Stop> {
         let at = self.geometry.interaction(&from.ray, hit);
         let surface = Surface::new(&at, from.ray.direction);
-        let media = self.cross(&mut worker.media, from.medium, &at, &surface);
-        let refracted = surface.refract(media.eta);
-        let reflect_kind = match refracted {
-            Some(_) => Kind::Reflect,
-            None => Kind::TotalReflect,
-        };
+        let crossing = worker.media.cross(from.medium, &at, surface.entering);
+        let eta = crossing.eta(&self.iors);
+        // What lets nothing through bends nothing, and reflects nothing more than a mirror does.
+        let bends = self.bends[at.material as usize];
+        let refracted = if bends { surface.refract(eta) } else { None };
+        let total = bends && refracted.is_none();
         let follow = |kind| self.values.follow(from.path, Factor::new(kind, at.material, 0));
-        let reflected = follow(reflect_kind);
-        let transmitted = refracted.map(|_| follow(Kind::Transmit));
-        let ends = Ends::new(
-            branch(reflected),
-            transmitted.map_or(Branch::Absent, branch),
-            refracted.is_none(),
-        );
+        let reflected = follow(if total { Kind::TotalReflect } else { Kind::Reflect });
+        let transmitted = (!total).then(|| follow(Kind::Transmit));
+        let ends = Ends::new(branch(reflected), transmitted.map_or(Branch::Absent, branch), total);
         let (material, slot) = (at.material, at.slot);
         let node = Node { t: hit.t, primitive: hit.primitive, material, lights: 0, slot, ends };
         let name = sink.node(node);
         for (light, place) in self.lights.iter().enumerate() {
-            self.light(simd, worker, &at, &surface, (light as u16, place), sink)?;
+            let light = (light as u16, place);
+            let met = recalled.as_mut().and_then(|r| r.light(self.keys[light.0 as usize]));
+            self.light(simd, worker, (&at, &surface), light, met, sink)?;
         }
-        let mut queue = |direction, path, side, medium| {
-            let (ray, leaving) = self.geometry.spawn(&at, direction);
+        let ends = recalled.map(|r| r.node.ends);
+        let mut queue = |direction, path, side, medium, known| {
+            let (ray, leaving) = match known {
+                // The direction of a ray that is not followed is of no use.
+                Known::Dropped => (from.ray, None),
+                _ => {
+                    let (ray, leaving) = self.geometry.spawn(&at, direction);
+                    (ray, Some(leaving))
+                }
+            };
             let parent = Some((name, side));
-            worker.pending.push(Pending { ray, leaving: Some(leaving), path, parent, medium });
+            worker.pending.push(Pending { ray, leaving, path, parent, medium, known });
         };
-        if let (Some(direction), Some(Ok(path))) = (refracted, transmitted) {
-            worker.rays.transmitted += 1;
-            queue(direction, path, Side::Transmitted, media.behind);
+        let same = ends.is_some() && self.refracts_as_before(&crossing, eta);
+        let through = transmitted.and_then(Result::ok).zip(refracted);
+        match (through, known(ends.map(Ends::transmitted), same, through.is_some())) {
+            (Some((path, direction)), known) => {
+                queue(direction, path, Side::Transmitted, crossing.behind, known);
+            }
+            (None, Known::Dropped) => {
+                queue(at.point, from.path, Side::Transmitted, from.medium, Known::Dropped);
+            }
+            _ => {}
         }
-        if let Ok(path) = reflected {
-            worker.rays.reflected += 1;
-            queue(surface.reflect(), path, Side::Reflected, from.medium);
+        match (reflected, known(ends.map(Ends::reflected), true, reflected.is_ok())) {
+            (Ok(path), known) => {
+                queue(surface.reflect(), path, Side::Reflected, from.medium, known);
+            }
+            (Err(_), Known::Dropped) => {
+                queue(at.point, from.path, Side::Reflected, from.medium, Known::Dropped);
+            }
+            _ => {}
         }
         Ok(())
     }
 
-    /// Sends a shadow ray to a light in front of the geometric surface.
+    /// Whether a surface bends rays as it did in the kept trees.
+    #[inline(always)]
+    fn refracts_as_before(&self, crossing: &Crossing, eta: f64) -> bool {
+        crossing.eta(&self.iors_before) == eta
+    }
+
+    /// Sends a shadow ray to a light in front of the geometric surface, unless `met` still stands.
     #[inline(always)]
     fn light<S: Simd, K: Sink>(
         &self,
         simd: S,
         worker: &mut Worker,
-        at: &Interaction,
-        surface: &Surface,
+        (at, surface): (&Interaction, &Surface),
         (light, place): (u16, &LightPlace),
+        met: Option<Met<'_>>,
         sink: &mut K,
     ) -> Result<(), Stop> {
         let to_light = match place {
@@ -323,21 +459,21 @@ impl<'a> Grower<'a> {
         if surface.geometric.dot(to_light) <= 0.0 {
             return Ok(());
         }
-        worker.rays.shadow += 1;
-        let (ray, leaving) = self.geometry.spawn(at, to_light);
-        let t_max = match place {
-            LightPlace::Point(p) => (*p - ray.origin).length(),
-            LightPlace::Direction(_) => f64::INFINITY,
+        let blocker = match met {
+            Some(Met::Blocker(solid)) if self.opaque[solid as usize] => Some(solid),
+            Some(Met::Crossed(solids)) => {
+                worker.crossed.clear();
+                worker.crossed.extend_from_slice(solids);
+                None
+            }
+            _ => self.cast_shadow(simd, worker, at, to_light, place),
         };
-        let Worker { stack, crossed, .. } = worker;
-        let leaving = Some(leaving);
-        let witness =
-            self.geometry.occluded(simd, stack, &ray, t_max, leaving, &self.opaque, crossed);
-        if let Some(material) = witness {
+        if let Some(solid) = blocker {
             let hit = LightHit { light, crossed: BLOCKED, n_dot_l: 0.0, one_minus_r_dot_v: 1.0 };
-            sink.light(hit, &[material]);
+            sink.light(hit, &[solid]);
             return Ok(());
         }
+        let crossed = &mut worker.crossed;
         if crossed.len() > MOST_CROSSED {
             return Err(Stop::Surfaces);
         }
@@ -355,29 +491,25 @@ impl<'a> Grower<'a> {
         Ok(())
     }
 
-    /// Which media meet at a surface, and the list of solids behind it.
+    /// The opaque solid between a point and a light, or, if there is none, all solids crossed, in
+    /// `worker.crossed`.
     #[inline(always)]
-    fn cross(
+    fn cast_shadow<S: Simd>(
         &self,
-        media: &mut Media,
-        front: u32,
+        simd: S,
+        worker: &mut Worker,
         at: &Interaction,
-        surface: &Surface,
-    ) -> Crossing {
-        if at.thin {
-            return Crossing { eta: 1.0, behind: front };
-        }
-        let ior = |solid: Option<(u32, u16)>| solid.map_or(1.0, |(_, m)| self.iors[m as usize]);
-        let own = Some((at.solid, at.material));
-        if surface.entering {
-            let behind = media.push(front, at.solid, at.material);
-            Crossing { eta: ior(media.top(front)) / ior(own), behind }
-        } else {
-            let behind = media.without(front, at.solid);
-            // A ray that leaves a solid which it never entered started inside it.
-            let inside = if behind == front { own } else { media.top(front) };
-            Crossing { eta: ior(inside) / ior(media.top(behind)), behind }
-        }
+        to_light: DVec3,
+        place: &LightPlace,
+    ) -> Option<u32> {
+        worker.rays.shadow += 1;
+        let (ray, leaving) = self.geometry.spawn(at, to_light);
+        let t_max = match place {
+            LightPlace::Point(p) => (*p - ray.origin).length(),
+            LightPlace::Direction(_) => f64::INFINITY,
+        };
+        let Worker { stack, crossed, .. } = worker;
+        self.geometry.occluded(simd, stack, &ray, t_max, Some(leaving), &self.opaque, crossed)
     }
 }
 
@@ -396,12 +528,6 @@ fn branch(followed: Result<PathWeight, End>) -> Branch {
         Err(End::Weight) => Branch::Weight,
         Err(End::Depth) => Branch::Depth,
     }
-}
-
-/// Ratio of the indices in front of and behind a surface, and the solids behind it.
-struct Crossing {
-    eta: f64,
-    behind: u32,
 }
 
 /// A surface as seen by the ray that met it: both normals on the ray's side.
@@ -450,59 +576,5 @@ impl Surface {
         let bent = through(self.normal)?;
         let below = bent.dot(self.geometric) < 0.0;
         if below { Some(bent.normalize()) } else { through(self.geometric).map(DVec3::normalize) }
-    }
-}
-
-/// The solids that a ray is inside of, as lists that share their tails: a sample's branches leave
-/// from common nodes. The solid entered last decides the index of refraction.
-#[derive(Default)]
-struct Media {
-    entries: Vec<Medium>,
-}
-
-#[derive(Clone, Copy)]
-struct Medium {
-    below: u32,
-    solid: u32,
-    material: u16,
-}
-
-impl Media {
-    /// The empty list.
-    const OUTSIDE: u32 = u32::MAX;
-
-    fn clear(&mut self) {
-        self.entries.clear();
-    }
-
-    fn push(&mut self, below: u32, solid: u32, material: u16) -> u32 {
-        self.entries.push(Medium { below, solid, material });
-        self.entries.len() as u32 - 1
-    }
-
-    /// The solid entered last, with its material.
-    #[inline(always)]
-    fn top(&self, list: u32) -> Option<(u32, u16)> {
-        self.entries.get(list as usize).map(|m| (m.solid, m.material))
-    }
-
-    /// The list without the latest entry of `solid`; the same list if it is not in it.
-    fn without(&mut self, list: u32, solid: u32) -> u32 {
-        let mut above = [Medium { below: 0, solid: 0, material: 0 }; 64];
-        let (mut at, mut count) = (list, 0);
-        while let Some(&medium) = self.entries.get(at as usize) {
-            if medium.solid == solid {
-                let mut rebuilt = medium.below;
-                for m in above[..count].iter().rev() {
-                    rebuilt = self.push(rebuilt, m.solid, m.material);
-                }
-                return rebuilt;
-            }
-            // A path has at most 64 branches, so a list has at most 64 entries.
-            above[count] = medium;
-            count += 1;
-            at = medium.below;
-        }
-        list
     }
 }

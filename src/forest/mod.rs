@@ -2,13 +2,17 @@
 
 pub mod camera;
 pub mod grow;
+pub mod kept;
+mod media;
 pub mod sampling;
 pub mod tree;
 
-use crate::film::layout::Layout;
-use tree::TileTrees;
+use std::sync::Arc;
 
-/// The kept trees of a picture, tile by tile.
+use crate::film::layout::Layout;
+use kept::KeptTrees;
+
+/// The kept trees of a picture, tile by tile. Clones share them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Forest {
     /// The cut of the picture.
@@ -16,29 +20,22 @@ pub struct Forest {
     /// Samples per pixel.
     pub samples: u32,
     /// Per tile its trees, or `None` where they were released for memory.
-    pub tiles: Vec<Option<TileTrees>>,
+    pub tiles: Vec<Option<Arc<KeptTrees>>>,
 }
 
 impl Forest {
     /// Allocated bytes of all trees.
     pub fn bytes(&self) -> usize {
-        self.tiles.iter().flatten().map(TileTrees::bytes).sum()
+        self.tiles.iter().flatten().map(|trees| trees.bytes()).sum()
     }
 
     /// Nodes of the kept trees.
     pub fn nodes(&self) -> usize {
-        self.tiles.iter().flatten().map(|t| t.nodes.len()).sum()
+        self.tiles.iter().flatten().map(|trees| trees.nodes.len()).sum()
     }
 
     /// Tiles whose trees were released.
     pub fn released(&self) -> usize {
         self.tiles.iter().filter(|t| t.is_none()).count()
-    }
-
-    /// Checks the invariants of every tile. Panics with what is wrong.
-    pub fn validate(&self, materials: usize, lights: usize) {
-        for trees in self.tiles.iter().flatten() {
-            trees.validate(materials, lights);
-        }
     }
 }

@@ -103,7 +103,8 @@ pub const BLOCKED: u16 = u16::MAX;
 /// # Invariants ([`TileTrees::validate`])
 /// Nodes of a sample stand in preorder, the reflected branch before the transmitted one; a node's
 /// lights stand in the order of the nodes and of the scene's lights; crossings in the order of the
-/// lights, each list sorted by material. Written by `grow`, read by `fold` and the inspector.
+/// lights. Written by `grow`, read by `fold` and the inspector; [`KeptTrees`](super::kept::KeptTrees)
+/// are what stays of them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TileTrees {
     /// Where each of the tile's 64 blocks begins.
@@ -114,8 +115,8 @@ pub struct TileTrees {
     pub nodes: Vec<Node>,
     /// Light records of all nodes.
     pub lights: Vec<LightHit>,
-    /// Materials that shadow rays crossed, or witnesses that stopped them.
-    pub crossings: Vec<u16>,
+    /// Solids that shadow rays crossed, or witnesses that stopped them.
+    pub crossings: Vec<u32>,
 }
 
 /// A position in all arrays of a [`TileTrees`].
@@ -149,7 +150,7 @@ impl TileTrees {
             + hits.capacity()
             + nodes.capacity() * size_of::<Node>()
             + lights.capacity() * size_of::<LightHit>()
-            + crossings.capacity() * 2
+            + crossings.capacity() * 4
     }
 
     /// Bytes of what is stored, without room for more.
@@ -162,17 +163,6 @@ impl TileTrees {
             + size_of_val(&**crossings)
     }
 
-    /// The same trees, moved to smaller memory if they leave more than an eighth of theirs free.
-    pub fn trimmed(mut self) -> TileTrees {
-        let TileTrees { blocks, hits, nodes, lights, crossings } = &mut self;
-        trim(blocks);
-        trim(hits);
-        trim(nodes);
-        trim(lights);
-        trim(crossings);
-        self
-    }
-
     /// A reader that begins at a block.
     pub fn read(&self, block: usize) -> Reader<'_> {
         Reader { trees: self, at: self.blocks[block] }
@@ -182,7 +172,7 @@ impl TileTrees {
     ///
     /// # Panics
     /// With what is wrong.
-    pub fn validate(&self, materials: usize, lights: usize) {
+    pub fn validate(&self, materials: usize, solids: usize, lights: usize) {
         let mut reader = Reader { trees: self, at: Start::default() };
         for (i, &hit) in self.hits.iter().enumerate() {
             if let Some(block) = self.blocks.iter().find(|b| b.sample as usize == i) {
@@ -205,8 +195,7 @@ impl TileTrees {
                     let (hit, crossed) = reader.light();
                     assert!(previous < Some(hit.light), "lights out of order");
                     assert!((hit.light as usize) < lights, "light {}", hit.light);
-                    assert!(crossed.is_sorted(), "crossings out of order");
-                    assert!(crossed.iter().all(|&m| (m as usize) < materials), "crossed material");
+                    assert!(crossed.iter().all(|&s| (s as usize) < solids), "crossed solid");
                     let finite = hit.n_dot_l.is_finite() && hit.one_minus_r_dot_v.is_finite();
                     assert!(finite, "cosines of {hit:?}");
                     previous = Some(hit.light);
@@ -217,12 +206,6 @@ impl TileTrees {
         assert_eq!(end.node as usize, self.nodes.len(), "nodes left over");
         assert_eq!(end.light as usize, self.lights.len(), "lights left over");
         assert_eq!(end.crossing as usize, self.crossings.len(), "crossings left over");
-    }
-}
-
-fn trim<T>(array: &mut Vec<T>) {
-    if array.capacity() > array.len() + array.len() / 8 {
-        array.shrink_to_fit();
     }
 }
 
@@ -247,9 +230,9 @@ impl<'a> Reader<'a> {
         &self.trees.nodes[self.at.node as usize - 1]
     }
 
-    /// The next light of the present node, with the materials crossed, or the one that blocked it.
+    /// The next light of the present node, with the solids crossed, or the one that blocked it.
     #[inline(always)]
-    pub fn light(&mut self) -> (&'a LightHit, &'a [u16]) {
+    pub fn light(&mut self) -> (&'a LightHit, &'a [u32]) {
         let hit = &self.trees.lights[self.at.light as usize];
         let from = self.at.crossing as usize;
         let count = if hit.crossed == BLOCKED { 1 } else { hit.crossed as usize };
@@ -295,7 +278,7 @@ impl Sink for TileTrees {
     }
 
     #[inline(always)]
-    fn light(&mut self, hit: LightHit, crossed: &[u16]) {
+    fn light(&mut self, hit: LightHit, crossed: &[u32]) {
         self.lights.push(hit);
         self.crossings.extend_from_slice(crossed);
         let last = self.nodes.len() - 1;
@@ -348,7 +331,7 @@ mod tests {
 
     #[test]
     fn a_sound_tile_validates() {
-        small().validate(2, 1);
+        small().validate(2, 2, 1);
     }
 
     #[test]
@@ -356,14 +339,14 @@ mod tests {
     fn a_lost_branch_is_found() {
         let mut trees = small();
         trees.nodes[0].ends = Ends::new(Branch::Zero, Branch::Zero, false);
-        trees.validate(2, 1);
+        trees.validate(2, 2, 1);
     }
 
     #[test]
-    #[should_panic(expected = "crossings out of order")]
-    fn unsorted_crossings_are_found() {
+    #[should_panic(expected = "crossed solid")]
+    fn an_unknown_solid_is_found() {
         let mut trees = small();
-        trees.crossings.reverse();
-        trees.validate(2, 1);
+        trees.crossings[1] = 7;
+        trees.validate(2, 2, 1);
     }
 }

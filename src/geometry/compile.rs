@@ -10,7 +10,7 @@ use super::primitive::{Form, Plane, Shape as OtherShape, Sphere};
 use super::shear::{Corner, corner};
 use crate::progress::{Cancelled, Progress};
 use crate::scene::mesh::Mesh;
-use crate::scene::{Paint, Scene, Shape, Solid};
+use crate::scene::{Scene, Shape, Solid};
 
 /// Elements handled between two looks at the cancel flag.
 const CHECK_EVERY: usize = 1 << 14;
@@ -58,8 +58,6 @@ pub(super) struct Compiled {
     pub(super) count: u32,
     /// Where the first one is found; the others follow.
     pub(super) item: Item,
-    /// Index into `Scene::materials`.
-    pub(super) material: u16,
     /// Whether it has no inside: a polygon, a mesh that is not closed.
     pub(super) thin: bool,
 }
@@ -78,20 +76,12 @@ pub(super) struct Primitives {
     pub(super) solids: Vec<Compiled>,
     /// The solid of each primitive.
     pub(super) solid_of: Vec<u32>,
-    /// Per material: the side of its checker cubes; `None` for a plain one.
-    pub(super) checker_sizes: Vec<Option<f64>>,
 }
 
 impl Primitives {
     /// Expands every solid of the scene.
     pub(super) fn compile(scene: &Scene, progress: &Progress) -> Result<Primitives, Cancelled> {
         let mut all = Primitives::default();
-        for material in &scene.materials {
-            all.checker_sizes.push(match material.paint {
-                Paint::Solid(_) => None,
-                Paint::Checker { a: _, b: _, size } => Some(size),
-            });
-        }
         for solid in &scene.solids {
             progress.check()?;
             all.add(solid, progress)?;
@@ -159,9 +149,8 @@ impl Primitives {
             }
         };
         let count = self.count_of(item.kind) as u32 - item.index;
-        let material = u16::try_from(solid.material).expect("fewer than 65536 materials");
         self.solid_of.resize((first + count) as usize, self.solids.len() as u32);
-        self.solids.push(Compiled { first, count, item, material, thin });
+        self.solids.push(Compiled { first, count, item, thin });
         Ok(())
     }
 

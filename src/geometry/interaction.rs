@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::compile::{Compiled, Kind, NO_NORMAL, Primitives};
+use super::compile::{Kind, NO_NORMAL, Primitives};
 use super::primitive::{Form, Plane, Sphere, cuboid_faces};
 use super::shear::{Crossing, Shear, point};
 use super::{Geometry, Hit, Interaction, Ray};
@@ -25,15 +25,17 @@ impl Geometry {
         };
         let shading_normal =
             smooth.and_then(|n| on_side_of(geometric_normal, n)).unwrap_or(geometric_normal);
-        let &Compiled { material, thin, .. } = solid;
+        let solid_index = all.solid_index(hit.primitive);
+        let material = self.surfaces.materials[solid_index as usize];
+        let checker = self.surfaces.checker_sizes[material as usize];
         Interaction {
             point,
             geometric_normal,
             shading_normal,
-            solid: all.solid_of[hit.primitive as usize],
+            solid: solid_index,
             material,
-            slot: all.checker_sizes[material as usize].map_or(0, |size| checker_slot(point, size)),
-            thin,
+            slot: checker.map_or(0, |size| checker_slot(point, size)),
+            thin: solid.thin,
             primitive: hit.primitive,
         }
     }

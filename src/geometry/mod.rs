@@ -16,6 +16,7 @@ mod plan;
 mod primitive;
 mod query;
 mod shear;
+mod surfaces;
 #[cfg(test)]
 mod testing;
 #[cfg(test)]
@@ -23,6 +24,8 @@ mod tests;
 #[cfg(test)]
 mod tests_acne;
 mod traverse;
+
+use std::sync::Arc;
 
 use fearless_simd::Simd;
 use glam::DVec3;
@@ -33,6 +36,7 @@ use compile::Primitives;
 use hierarchy::Hierarchy;
 pub use hierarchy::Stack;
 use query::{Closest, Shadow};
+use surfaces::Surfaces;
 
 /// A half-line in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,11 +86,12 @@ pub struct Interaction {
     pub primitive: u32,
 }
 
-/// The compiled scene.
-#[derive(Debug)]
+/// The compiled scene. Clones share everything large.
+#[derive(Clone, Debug)]
 pub struct Geometry {
-    primitives: Primitives,
-    hierarchy: Hierarchy,
+    primitives: Arc<Primitives>,
+    hierarchy: Arc<Hierarchy>,
+    surfaces: Surfaces,
 }
 
 impl Geometry {
@@ -94,7 +99,18 @@ impl Geometry {
     pub fn build(scene: &Scene, progress: &Progress) -> Result<Geometry, Cancelled> {
         let primitives = Primitives::compile(scene, progress)?;
         let hierarchy = Hierarchy::build(&primitives, progress)?;
-        Ok(Geometry { primitives, hierarchy })
+        Ok(Geometry {
+            primitives: Arc::new(primitives),
+            hierarchy: Arc::new(hierarchy),
+            surfaces: Surfaces::of(scene),
+        })
+    }
+
+    /// The geometry of a scene with the same solids, of which some may have other materials, and
+    /// materials other textures: what [`Geometry::build`] would give.
+    pub fn with_surfaces_of(&self, scene: &Scene) -> Geometry {
+        assert_eq!(scene.solids.len(), self.surfaces.materials.len(), "the same solids");
+        Geometry { surfaces: Surfaces::of(scene), ..self.clone() }
     }
 
     /// The hit with the smallest `t > 0`; of equal ones, that of the lowest primitive.
@@ -113,9 +129,9 @@ impl Geometry {
 
     /// What stands between the ray's origin and a light at `0 < t < t_max`.
     ///
-    /// Returns the material of an opaque surface if there is one (`opaque` is indexed by material).
-    /// Otherwise `crossed` holds the material of every transparent surface crossing, in no
-    /// particular order; it is cleared first.
+    /// Returns the solid of an opaque surface if there is one (`opaque` is indexed by solid).
+    /// Otherwise `crossed` holds the solid of every transparent surface crossing, in no particular
+    /// order; it is cleared first.
     #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "the hot path's scratch is passed in, not boxed")]
     pub fn occluded<S: Simd>(
@@ -126,8 +142,8 @@ impl Geometry {
         t_max: f64,
         leaving: Option<Leaving>,
         opaque: &[bool],
-        crossed: &mut Vec<u16>,
-    ) -> Option<u16> {
+        crossed: &mut Vec<u32>,
+    ) -> Option<u32> {
         crossed.clear();
         let mut query = Shadow::new(&self.primitives, t_max, opaque, crossed);
         self.traverse(simd, stack, ray, leaving, &mut query);
@@ -145,6 +161,16 @@ impl Geometry {
     /// The solid that a primitive belongs to: an index into `Scene::solids`.
     pub fn solid(&self, primitive: u32) -> u32 {
         self.primitives.solid_index(primitive)
+    }
+
+    /// Per solid an index into `Scene::materials`.
+    pub fn materials(&self) -> &[u16] {
+        &self.surfaces.materials
+    }
+
+    /// What every solid's material has.
+    pub fn of_solids<T: Copy>(&self, of_materials: &[T]) -> Vec<T> {
+        self.materials().iter().map(|&material| of_materials[material as usize]).collect()
     }
 
     /// How many primitives there are.

@@ -61,14 +61,15 @@ impl Query for Closest {
     }
 }
 
-/// The materials before a light at `t_max`, until one is opaque.
+/// The solids before a light at `t_max`, until one is opaque.
 #[derive(Debug)]
 pub(super) struct Shadow<'a> {
     primitives: &'a Primitives,
     t_max: f64,
+    /// Per solid.
     opaque: &'a [bool],
-    crossed: &'a mut Vec<u16>,
-    blocker: Option<u16>,
+    crossed: &'a mut Vec<u32>,
+    blocker: Option<u32>,
 }
 
 impl<'a> Shadow<'a> {
@@ -78,14 +79,14 @@ impl<'a> Shadow<'a> {
         primitives: &'a Primitives,
         t_max: f64,
         opaque: &'a [bool],
-        crossed: &'a mut Vec<u16>,
+        crossed: &'a mut Vec<u32>,
     ) -> Shadow<'a> {
         Shadow { primitives, t_max, opaque, crossed, blocker: None }
     }
 
-    /// The opaque material that was met.
+    /// The opaque solid that was met.
     #[inline(always)]
-    pub(super) fn blocker(&self) -> Option<u16> {
+    pub(super) fn blocker(&self) -> Option<u32> {
         self.blocker
     }
 }
@@ -101,11 +102,11 @@ impl Query for Shadow<'_> {
     #[inline(always)]
     fn offer(&mut self, t: f64, primitive: u32) {
         if t < self.t_max {
-            let material = self.primitives.solid(primitive).material;
-            if self.opaque[material as usize] {
-                self.blocker = Some(material);
+            let solid = self.primitives.solid_index(primitive);
+            if self.opaque[solid as usize] {
+                self.blocker = Some(solid);
             } else {
-                self.crossed.push(material);
+                self.crossed.push(solid);
             }
         }
     }

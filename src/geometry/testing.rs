@@ -125,7 +125,7 @@ pub(super) fn closest(
     dispatch!(level, simd => geometry.closest_hit(simd, stack, ray, leaving))
 }
 
-/// The blocker, or the materials crossed in ascending order.
+/// The blocker, or the solids crossed in ascending order.
 pub(super) fn shadow(
     geometry: &Geometry,
     level: Level,
@@ -133,7 +133,7 @@ pub(super) fn shadow(
     (ray, t_max): (&Ray, f64),
     leaving: Option<Leaving>,
     opaque: &[bool],
-) -> Result<Vec<u16>, u16> {
+) -> Result<Vec<u32>, u32> {
     let mut crossed = vec![77];
     let blocker = dispatch!(level, simd =>
         geometry.occluded(simd, stack, ray, t_max, leaving, opaque, &mut crossed));

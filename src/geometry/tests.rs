@@ -26,9 +26,10 @@ fn brute_closest(geometry: &Geometry, ray: &Ray, leaving: Option<Leaving>) -> Op
     query.hit()
 }
 
-fn brute_crossed(geometry: &Geometry, ray: &Ray, t_max: f64) -> Vec<u16> {
+fn brute_crossed(geometry: &Geometry, ray: &Ray, t_max: f64) -> Vec<u32> {
     let mut crossed = vec![];
-    let mut query = Shadow::new(&geometry.primitives, t_max, &[false; 2], &mut crossed);
+    let opaque = vec![false; geometry.materials().len()];
+    let mut query = Shadow::new(&geometry.primitives, t_max, &opaque, &mut crossed);
     geometry.traverse_all(ray, None, &mut query);
     crossed.sort_unstable();
     crossed
@@ -99,7 +100,8 @@ fn disagreements(geometry: &Geometry, truth: &Geometry, rays: usize, seed: u64) 
             let found = closest(geometry, level, &mut stack, &ray, None);
             let same = found.map(|h| (h.t.to_bits(), h.primitive))
                 == first.map(|h| (h.t.to_bits(), h.primitive));
-            let seen = shadow(geometry, level, &mut stack, (&ray, t_max), None, &[false; 2]);
+            let opaque = vec![false; geometry.materials().len()];
+            let seen = shadow(geometry, level, &mut stack, (&ray, t_max), None, &opaque);
             wrong += usize::from(!same || seen.as_ref() != Ok(&crossed));
         }
         // A bounce from the hit.
@@ -249,7 +251,8 @@ fn powers_of_two_change_no_bit() {
 /// Crossings of a ray through the whole geometry.
 fn crossings(geometry: &Geometry, stack: &mut Stack, ray: &Ray) -> usize {
     let ray = (ray, f64::INFINITY);
-    shadow(geometry, Level::new(), stack, ray, None, &[false; 2]).unwrap().len()
+    let opaque = vec![false; geometry.materials().len()];
+    shadow(geometry, Level::new(), stack, ray, None, &opaque).unwrap().len()
 }
 
 #[test]

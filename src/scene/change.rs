@@ -13,11 +13,28 @@ use super::{
 /// does not know, may still turn `terms` into more work: `session` asks it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Change {
-    /// The first parameter found that moves rays, if any: everything is traced again.
+    /// The first parameter found that asks for more than shading, if any: trees are grown again.
     pub moves_rays: Option<&'static str>,
-    /// Whether what moves rays is in the compiled geometry: solids, and where their colours fall.
+    /// Whether all trees are.
+    pub everything: bool,
+    /// Whether what differs is in the compiled geometry's hierarchy: solids.
     pub geometry: bool,
-    /// Materials whose highlight has another exponent: their coefficients are folded again.
+    /// Whether it is in the rest of the compiled geometry: the solids' materials, and where their
+    /// colours fall.
+    pub surfaces: bool,
+    /// Materials of the old scene whose surfaces are to be read again, in the trees that show them
+    /// or pass light through them.
+    pub nodes: Vec<u16>,
+    /// Whether shadow rays to a light are cast everywhere: it is new, or elsewhere.
+    pub shadows: bool,
+    /// Whether reading again may cast rays.
+    pub casts: bool,
+    /// Per light of the new scene the light of the old one that stands in the same place.
+    pub lights: Vec<Option<u16>>,
+    /// Per material of the new scene that of the old one.
+    pub materials: Vec<Option<u16>>,
+    /// Materials of the new scene whose highlight has another exponent: their coefficients are folded
+    /// again.
     pub refold: Vec<u16>,
     /// A factor may have another value, or the rule of liveness another limit.
     pub terms: bool,
@@ -26,7 +43,8 @@ pub struct Change {
 }
 
 impl Change {
-    /// Compares two scenes. Names never count.
+    /// Compares two scenes. Names count only where there are more or fewer lights or materials: then
+    /// they tell which ones are the same.
     pub fn between(old: &Scene, new: &Scene) -> Change {
         let mut change = Change::default();
         let Scene { ambient_light, picture, camera, background, trace, lights, materials, solids } =
@@ -37,25 +55,71 @@ impl Change {
         let Background { color } = background;
         change.term(*color != new.background.color);
         change.trace(trace, &new.trace);
-        change.ray(lights.len() != new.lights.len(), "the number of lights");
-        change.form(materials.len() != new.materials.len(), "the number of materials");
         change.form(solids.len() != new.solids.len(), "the number of solids");
-        for (a, b) in lights.iter().zip(&new.lights) {
-            change.light(a, b);
+        change.lights(lights, &new.lights);
+        change.materials = matched(materials, &new.materials, |m| &m.name);
+        for (i, material) in new.materials.iter().enumerate() {
+            if let Some(before) = change.materials[i] {
+                change.material(i, before, &materials[before as usize], material);
+            }
         }
-        for (i, (a, b)) in materials.iter().zip(&new.materials).enumerate() {
-            change.material(i, a, b);
-        }
+        change.surfaces |= !change.keeps_materials() || materials.len() != new.materials.len();
         for (a, b) in solids.iter().zip(&new.solids) {
             change.solid(a, b);
+            change.assigned(a, materials.get(a.material), b, new.materials.get(b.material));
         }
+        change.nodes.sort_unstable();
+        change.nodes.dedup();
         change
     }
 
-    fn ray(&mut self, differs: bool, what: &'static str) {
+    /// Whether every material of the new scene has its index of the old one.
+    pub fn keeps_materials(&self) -> bool {
+        self.materials.iter().zip(0..).all(|(&before, new)| before == Some(new))
+    }
+
+    fn lights(&mut self, old: &[Light], new: &[Light]) {
+        self.lights = matched(old, new, |light| &light.name);
+        for (i, light) in new.iter().enumerate() {
+            match self.lights[i] {
+                Some(before) => {
+                    if !self.light(&old[before as usize], light) {
+                        self.lights[i] = None;
+                    }
+                }
+                None => self.shadow(true, "a light"),
+            }
+        }
+        // Keys of the records in kept trees must not run out.
+        self.ray(self.shadows && new.len() > usize::from(u16::MAX) / 2, "a light");
+        // What a light that is gone lit is as black as if it were off.
+        self.term(old.len() != new.len());
+    }
+
+    fn shadow(&mut self, differs: bool, what: &'static str) {
+        self.part(differs, what);
+        self.shadows |= differs;
+        self.casts |= differs;
+    }
+
+    /// Notes what moves rays of some trees.
+    fn part(&mut self, differs: bool, what: &'static str) {
         if differs && self.moves_rays.is_none() {
             self.moves_rays = Some(what);
         }
+    }
+
+    /// Notes that surfaces of an old material are to be read again.
+    fn node(&mut self, differs: bool, material: u16, what: &'static str) {
+        self.part(differs, what);
+        if differs {
+            self.nodes.push(material);
+        }
+    }
+
+    fn ray(&mut self, differs: bool, what: &'static str) {
+        self.part(differs, what);
+        self.everything |= differs;
     }
 
     fn form(&mut self, differs: bool, what: &'static str) {
@@ -89,19 +153,21 @@ impl Change {
         self.term(*depth != new.depth || *cutoff != new.cutoff);
     }
 
-    fn light(&mut self, old: &Light, new: &Light) {
+    /// Gives whether it is in the same place.
+    fn light(&mut self, old: &Light, new: &Light) -> bool {
         let Light { name: _, color, intensity, on, place } = old;
         self.term(*color != new.color || *intensity != new.intensity || *on != new.on);
         match (place, &new.place) {
-            (LightPlace::Point(a), LightPlace::Point(b)) => self.ray(a != b, "a light's point"),
+            (LightPlace::Point(a), LightPlace::Point(b)) => self.shadow(a != b, "a light's point"),
             (LightPlace::Direction(a), LightPlace::Direction(b)) => {
-                self.ray(a != b, "a light's direction");
+                self.shadow(a != b, "a light's direction");
             }
-            _ => self.ray(true, "a light's place"),
+            _ => self.shadow(true, "a light's place"),
         }
+        *place == new.place
     }
 
-    fn material(&mut self, index: usize, old: &Material, new: &Material) {
+    fn material(&mut self, index: usize, before: u16, old: &Material, new: &Material) {
         let Material {
             name: _,
             paint,
@@ -117,7 +183,7 @@ impl Change {
             filter,
             ior,
         } = old;
-        self.paint(paint, &new.paint);
+        self.paint(before, paint, &new.paint);
         let local = *kloc != new.kloc || *ambient != new.ambient || *diffuse != new.diffuse;
         let gloss = *specular != new.specular || *metallic != new.metallic;
         self.term(local || gloss || *emission != new.emission);
@@ -126,32 +192,82 @@ impl Change {
         if *shininess != new.shininess {
             self.refold.push(index as u16);
         }
-        self.ray(*ior != new.ior, "ior");
+        let bends = *ior != new.ior && (old.ior_matters() || new.ior_matters());
+        self.node(bends, before, "ior");
+        self.casts |= bends && !new.transmit.is_black();
     }
 
-    fn paint(&mut self, old: &Paint, new: &Paint) {
+    fn paint(&mut self, before: u16, old: &Paint, new: &Paint) {
         match (old, new) {
             (Paint::Solid(a), Paint::Solid(b)) => self.term(a != b),
             (Paint::Checker { a, b, size }, Paint::Checker { a: a2, b: b2, size: size2 }) => {
                 self.term(a != a2 || b != b2);
-                self.form(size != size2, "texture.checker.size");
+                self.node(size != size2, before, "texture.checker.size");
+                self.surfaces |= size != size2;
             }
-            _ => self.form(true, "the kind of texture"),
+            _ => {
+                self.node(true, before, "the kind of texture");
+                self.surfaces = true;
+            }
         }
     }
 
+    /// Compares what a solid is made of.
+    fn assigned(
+        &mut self,
+        old: &Solid,
+        old_material: Option<&Material>,
+        new: &Solid,
+        new_material: Option<&Material>,
+    ) {
+        let before = old.material as u16;
+        let differs = self.materials.get(new.material) != Some(&Some(before));
+        self.node(differs, before, "a solid's material");
+        self.surfaces |= differs;
+        let alike = old_material.zip(new_material).is_some_and(|(a, b)| a.leads_rays_like(b));
+        self.casts |= differs && !alike;
+    }
+
     fn solid(&mut self, old: &Solid, new: &Solid) {
-        let Solid { name: _, shape, material, placement } = old;
+        let Solid { name: _, shape, material: _, placement } = old;
         // A mesh that is shared is not compared vertex by vertex.
         let same_mesh = match (shape, &new.shape) {
             (Shape::Mesh { mesh: a, .. }, Shape::Mesh { mesh: b, .. }) => Arc::ptr_eq(a, b),
             _ => false,
         };
         self.form(!same_mesh && *shape != new.shape, "a solid's shape");
-        self.form(*material != new.material, "a solid's material");
         let Placement { translate, rotate_degrees, scale } = placement;
         self.form(*translate != new.placement.translate, "translate");
         self.form(*rotate_degrees != new.placement.rotate_degrees, "rotate_degrees");
         self.form(*scale != new.placement.scale, "scale");
+    }
+}
+
+/// Per new thing the old one that it is: the one at the same place in a list as long as the old one,
+/// the next one of the same name in another.
+fn matched<T>(old: &[T], new: &[T], name: impl Fn(&T) -> &str) -> Vec<Option<u16>> {
+    if old.len() == new.len() {
+        return (0..).map(Some).take(new.len()).collect();
+    }
+    let mut from = 0;
+    let find = |thing: &T| {
+        let at = from + old[from..].iter().position(|o| name(o) == name(thing))?;
+        from = at + 1;
+        Some(at as u16)
+    };
+    new.iter().map(find).collect()
+}
+
+impl Material {
+    /// Whether its index of refraction shows: what lets no light through bends none. With a weight
+    /// above 1 total reflection differs from a mirror's.
+    pub fn ior_matters(&self) -> bool {
+        !self.transmit.is_black() || self.reflect.max_channel() > 1.0
+    }
+
+    /// Whether the rays of the seen path and shadow rays go on from it as from `other`.
+    fn leads_rays_like(&self, other: &Material) -> bool {
+        let path = |m: &Material| (m.reflect, m.transmit, m.filter);
+        path(self) == path(other) && (self.ior == other.ior || !self.ior_matters())
     }
 }

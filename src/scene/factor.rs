@@ -96,6 +96,15 @@ impl Factor {
         matches!(self.kind(), Kind::Reflect | Kind::Transmit | Kind::TotalReflect)
     }
 
+    /// Whether its index is that of a material.
+    pub fn is_of_material(self) -> bool {
+        match self.kind() {
+            Kind::Reflect | Kind::Transmit | Kind::TotalReflect => true,
+            Kind::Ambient | Kind::Diffuse | Kind::Specular | Kind::Shadow => true,
+            Kind::Background | Kind::Light | Kind::Channel => false,
+        }
+    }
+
     /// Text such as `diffuse(tiles.b)`, for people.
     pub fn describe(self, scene: &Scene) -> String {
         let material = || scene.materials[self.index()].name.as_str();
@@ -163,6 +172,18 @@ impl FactorValues {
         }
     }
 
+    /// The same where the factors of lights are numbered by `places`, one per light, rising; the
+    /// gaps, lights that are gone, are black.
+    pub fn with_lights_at(mut self, places: &[u16]) -> FactorValues {
+        let count = places.last().map_or(0, |&last| last as usize + 1);
+        let mut light = vec![Rgb::BLACK; count];
+        for (value, &place) in self.light.iter().zip(places) {
+            light[place as usize] = *value;
+        }
+        self.light = light;
+        self
+    }
+
     /// The value of one factor, every channel ≥ 0.
     #[inline(always)]
     pub fn value(&self, factor: Factor) -> Rgb {
@@ -175,7 +196,8 @@ impl FactorValues {
             Kind::Ambient => self.ambient[i][slot],
             Kind::Diffuse => self.diffuse[i][slot],
             Kind::Specular => self.specular[i][slot],
-            Kind::Light => self.light[i],
+            // A light after the last one is gone.
+            Kind::Light => self.light.get(i).copied().unwrap_or(Rgb::BLACK),
             Kind::Channel => Rgb(std::array::from_fn(|c| if c == i { 1.0 } else { 0.0 })),
         }
     }

@@ -1,6 +1,6 @@
 //! What editing a parameter will cost, known before it is touched.
 
-use super::Session;
+use super::{Session, Work};
 use crate::color::Rgb;
 use crate::fold::trie::ROOT;
 use crate::scene::change::Change;
@@ -17,14 +17,27 @@ use crate::shade::terms::frontier_lives;
 pub enum Cost {
     /// Any value is a re-shade.
     Instant,
-    /// A re-shade for values ≤ this, a trace for values above it.
-    InstantUpTo(f64),
-    /// A re-shade for values ≥ this, a trace for values below it.
-    InstantDownTo(f64),
+    /// A re-shade for values ≤ this; rays for values above it, for these pixels just above it.
+    InstantUpTo(f64, Pixels),
+    /// A re-shade for values ≥ this; rays for values below it, for these pixels just below it.
+    InstantDownTo(f64, Pixels),
     /// Highlights are folded again, no ray is cast.
     Refold,
+    /// The kept trees of these pixels are read and folded again, no ray is cast.
+    Reread(Pixels),
+    /// The trees of these pixels are grown again.
+    Regrow(Pixels),
     /// Everything is traced.
     TraceAll,
+}
+
+/// Some of the pixels of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pixels {
+    /// How many.
+    pub count: u64,
+    /// Of how many.
+    pub of: u64,
 }
 
 /// What editing the parameter at `path` will cost in a session; `None` if there is no such
@@ -32,8 +45,8 @@ pub enum Cost {
 ///
 /// Where a branch may come alive, the limit is exact to the last bit: liveness rises with every
 /// parameter (and falls with the cut-off), so the greatest value is sought at which no term of the
-/// frontier lives.
-pub fn cost(session: &Session, path: &str) -> Option<Cost> {
+/// frontier lives. So are the pixels.
+pub fn cost(session: &mut Session, path: &str) -> Option<Cost> {
     let altered = path::altered(session.scene(), path)?;
     Some(match Knob::between(session.scene(), &altered) {
         Some(knob) => knob.cost(session),
@@ -43,22 +56,25 @@ pub fn cost(session: &Session, path: &str) -> Option<Cost> {
 
 /// The same while the scene is still traced and `session` holds a preview of it: `None` also where
 /// only the whole picture's frontier can tell.
-pub fn cost_of_preview(session: &Session, path: &str) -> Option<Cost> {
+pub fn cost_of_preview(session: &mut Session, path: &str) -> Option<Cost> {
     let altered = path::altered(session.scene(), path)?;
     let knob = Knob::between(session.scene(), &altered);
-    knob.is_none().then(|| cost_of(session, &altered))
+    knob.is_none().then(|| match cost_of(session, &altered) {
+        Cost::Reread(_) | Cost::Regrow(_) => Cost::TraceAll,
+        cost => cost,
+    })
 }
 
 /// The cost of an edit that brings no branch to life.
-fn cost_of(session: &Session, altered: &Scene) -> Cost {
+fn cost_of(session: &mut Session, altered: &Scene) -> Cost {
     let change = Change::between(session.scene(), altered);
-    let released = || session.transport.tiles.iter().any(|tile| tile.highlights.is_none());
-    if change.moves_rays.is_some() {
-        Cost::TraceAll
-    } else if !change.refold.is_empty() {
-        if released() { Cost::TraceAll } else { Cost::Refold }
-    } else {
-        Cost::Instant
+    let of = session.transport.layout.pixels();
+    match session.work(altered, &change) {
+        Work::Trace(_) => Cost::TraceAll,
+        Work::Regrow(plan) if plan.casts => Cost::Regrow(Pixels { count: plan.pixels(), of }),
+        Work::Regrow(plan) => Cost::Reread(Pixels { count: plan.pixels(), of }),
+        Work::Shade if !change.refold.is_empty() => Cost::Refold,
+        Work::Shade => Cost::Instant,
     }
 }
 
@@ -162,14 +178,38 @@ impl Knob {
         }
     }
 
-    fn cost(self, session: &Session) -> Cost {
+    fn cost(self, session: &mut Session) -> Cost {
         let [first, last] = self.steps(session.scene());
         let limit = Search::new(self, session.scene(), first, last).limit(session);
-        match self {
-            _ if limit == last => Cost::Instant,
-            Knob::Cutoff => Cost::InstantDownTo(self.value(limit)),
-            _ => Cost::InstantUpTo(self.value(limit)),
+        let limit = limit.min(self.stale_from(session).unwrap_or(last));
+        if limit == last {
+            return Cost::Instant;
         }
+        let mut beyond = session.scene().clone();
+        self.factors(&mut beyond, session.scene(), limit + 1);
+        let change = Change::between(session.scene(), &beyond);
+        let of = session.transport.layout.pixels();
+        let pixels = match session.work(&beyond, &change) {
+            Work::Regrow(plan) => Pixels { count: plan.pixels(), of },
+            Work::Shade | Work::Trace(_) => Pixels { count: of, of },
+        };
+        match self {
+            Knob::Cutoff => Cost::InstantDownTo(self.value(limit), pixels),
+            _ => Cost::InstantUpTo(self.value(limit), pixels),
+        }
+    }
+
+    /// The last step at which an index of refraction that the trees were not grown with does not
+    /// matter, if it matters beyond.
+    fn stale_from(self, session: &Session) -> Option<u32> {
+        let (material, step) = match self {
+            Knob::Reflect(i) => (i, 1f32.to_bits()),
+            Knob::Transmit(i) => (i, 0),
+            Knob::Filter(_) | Knob::Depth | Knob::Cutoff => return None,
+        };
+        let material_now = &session.scene().materials[material];
+        let stale = material_now.ior != session.iors[material];
+        (stale && !material_now.ior_matters()).then_some(step)
     }
 }
 

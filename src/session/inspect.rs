@@ -2,8 +2,8 @@
 
 use super::trace::TraceError;
 use crate::color::Rgb;
-use crate::film::layout::{LANES, Layout, Place};
-use crate::fold::Folder;
+use crate::film::layout::{LANES, Layout};
+use crate::fold::{Folder, Names};
 use crate::forest::grow::Grower;
 use crate::forest::tree::{BLOCKED, Branch, Reader, TileTrees};
 use crate::geometry::Geometry;
@@ -87,15 +87,15 @@ pub fn pixel(
     let grown = grower.block(&mut grower.worker(), at, &mut trees, MOST_BYTES, progress);
     grown.map_err(|stop| TraceError::of(stop, MOST_BYTES))?;
     let samples = scene.trace.samples;
-    let covered: [bool; LANES] =
-        std::array::from_fn(|lane| layout.pixel(Place { lane, ..place }).is_some());
+    let covered = layout.covered(place.tile, place.block);
     let before = covered[..place.lane].iter().filter(|c| **c).count() as u32 * samples;
     let mut walk = Walk { reader: trees.read(0), geometry };
     for _ in 0..before {
         walk.sample();
     }
     let samples_trees = (0..samples).map(|_| walk.sample()).collect();
-    let (terms, light) = terms(scene, &trees, covered, place.lane);
+    let names = Names::new(geometry.materials(), scene.lights.len());
+    let (terms, light) = terms(scene, &trees, covered, place.lane, &names);
     Ok(Inspection { light, samples: samples_trees, terms })
 }
 
@@ -105,11 +105,12 @@ fn terms(
     trees: &TileTrees,
     covered: [bool; LANES],
     lane: usize,
+    names: &Names,
 ) -> (Vec<TermShare>, Rgb) {
     let shininess: Vec<_> = scene.materials.iter().map(|m| Some(m.shininess)).collect();
     let mut folder = Folder::default();
     folder.begin_tile();
-    folder.block(&mut trees.read(0), covered, scene.trace.samples);
+    folder.block(&mut trees.read(0), covered, scene.trace.samples, names);
     let weight = 1.0 / scene.trace.samples as f32;
     let folded = folder.finish_tile(weight, &shininess);
     let mut values = TermValues::default();
@@ -168,6 +169,13 @@ impl Walk<'_> {
         (branch, grown.then(|| Box::new(self.node())))
     }
 
+    fn materials(&self, solids: &[u32]) -> Vec<u16> {
+        let of_solids = self.geometry.materials();
+        let mut materials: Vec<u16> = solids.iter().map(|&s| of_solids[s as usize]).collect();
+        materials.sort_unstable();
+        materials
+    }
+
     fn light(&mut self) -> InspectedLight {
         let (hit, crossed) = self.reader.light();
         InspectedLight {
@@ -175,7 +183,7 @@ impl Walk<'_> {
             blocked: hit.crossed == BLOCKED,
             n_dot_l: hit.n_dot_l,
             r_dot_v: 1.0 - hit.one_minus_r_dot_v,
-            crossed: crossed.to_vec(),
+            crossed: self.materials(crossed),
         }
     }
 }

@@ -5,16 +5,20 @@ mod canvas;
 pub mod cost;
 pub mod inspect;
 pub mod live;
+pub mod plan;
+pub mod regrow;
 pub mod trace;
 
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
+use crate::film::layout::TILE_BLOCKS;
 use crate::film::{Film, Frame};
+use crate::fold::Names;
 use crate::fold::highlight::HighlightPower;
 use crate::fold::transport::Transport;
 use crate::forest::Forest;
@@ -23,12 +27,14 @@ use crate::forest::tree::TileTrees;
 use crate::geometry::Geometry;
 use crate::math::exposure_factor;
 use crate::progress::Progress;
-use crate::scene::Scene;
 use crate::scene::change::Change;
 use crate::scene::factor::FactorValues;
+use crate::scene::{Material, Scene};
 use crate::shade::cpu::{self, Tiles};
 use crate::shade::terms::{TermProgram, TermValues};
 use canvas::Canvas;
+use plan::Plan;
+use regrow::{Patch, Regrow};
 use trace::{Keep, Kept, TraceError, TraceReport, trace};
 
 /// What a session may use.
@@ -82,6 +88,28 @@ impl fmt::Display for Class {
     }
 }
 
+/// What is to be done for an edit.
+#[derive(Clone, Debug)]
+pub enum Work {
+    /// Terms and product, highlights before them.
+    Shade,
+    /// Some pixels' trees.
+    Regrow(Plan),
+    /// Everything, for this reason.
+    Trace(String),
+}
+
+impl Work {
+    /// What asks for more than shading.
+    pub fn reason(&self) -> &str {
+        match self {
+            Work::Shade => "nothing",
+            Work::Regrow(plan) => &plan.reason,
+            Work::Trace(reason) => reason,
+        }
+    }
+}
+
 /// What was done for an edit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EditReport {
@@ -111,6 +139,13 @@ pub struct Session {
     /// The terms before the latest edit, to find the tiles that changed.
     before: Vec<[f32; 4]>,
     canvas: Canvas,
+    /// Per light the key of its records in the trees.
+    keys: Vec<u16>,
+    /// Which factors stand for the scene's solids and lights in the matrix.
+    names: Names,
+    /// Per material the index of refraction with which its nodes stand in the trees: another one than
+    /// the scene's only where it does not matter.
+    iors: Vec<f64>,
     trace: TraceReport,
     geometry_seconds: f64,
 }
@@ -157,6 +192,9 @@ impl Session {
         let traced = trace(&scene, &geometry, &pool, keep, reuse, progress)?;
         let mut session = Session {
             canvas: Canvas::new(scene.picture.size),
+            keys: (0..).take(scene.lights.len()).collect(),
+            names: Names::new(geometry.materials(), scene.lights.len()),
+            iors: scene.materials.iter().map(|m| m.ior).collect(),
             scene,
             options,
             pool,
@@ -183,10 +221,11 @@ impl Session {
     ) -> Result<EditReport, TraceError> {
         let start = Instant::now();
         let scene = scene.into();
-        let mut report = match self.edit_without_rays(&scene) {
-            Ok(report) => report,
-            Err(reason) => {
-                let change = Change::between(&self.scene, &scene);
+        let change = Change::between(&self.scene, &scene);
+        let mut report = match self.work(&scene, &change) {
+            Work::Shade => self.shade(scene, &change),
+            Work::Regrow(plan) => self.carry_out(scene, &change, plan, progress)?,
+            Work::Trace(reason) => {
                 self.retrace(scene, change.geometry, progress)?;
                 self.trace_edit(reason)
             }
@@ -195,17 +234,61 @@ impl Session {
         Ok(report)
     }
 
-    /// Makes `scene` the session's if that needs no ray; otherwise the session stays as it is, and
-    /// the error says what asks for rays.
-    pub fn edit_without_rays(&mut self, scene: &Arc<Scene>) -> Result<EditReport, String> {
+    /// Makes `scene` the session's if shading is enough; otherwise the session stays as it is, and
+    /// what is given says what else is to be done.
+    pub fn edit_without_rays(&mut self, scene: &Arc<Scene>) -> Result<EditReport, Work> {
         let start = Instant::now();
         let change = Change::between(&self.scene, scene);
-        if let Some(reason) = self.needs_rays(scene, &change) {
-            return Err(reason);
+        match self.work(scene, &change) {
+            Work::Shade => {
+                let report = self.shade(scene.clone(), &change);
+                let milliseconds = start.elapsed().as_secs_f64() * 1e3;
+                Ok(EditReport { milliseconds, ..report })
+            }
+            work => Err(work),
         }
-        let class = self.without_rays(scene.clone(), &change);
-        let milliseconds = start.elapsed().as_secs_f64() * 1e3;
-        Ok(EditReport { class, reason: None, rays: RayCounts::default(), pixels: 0, milliseconds })
+    }
+
+    /// What is to be done for an edit.
+    fn work(&mut self, scene: &Scene, change: &Change) -> Work {
+        if change.everything {
+            let what = change.moves_rays.unwrap_or("the scene");
+            return Work::Trace(format!("{what} moves rays"));
+        }
+        self.plan(scene, change).map_or(Work::Shade, Work::Regrow)
+    }
+
+    /// Grows what a plan names, and folds it.
+    fn carry_out(
+        &mut self,
+        scene: Arc<Scene>,
+        change: &Change,
+        plan: Plan,
+        progress: &Progress,
+    ) -> Result<EditReport, TraceError> {
+        let regrow = self.regrow(scene, change, plan);
+        let patches = Mutex::new(Vec::new());
+        let keep = |patch| patches.lock().expect("no worker panicked").push(patch);
+        regrow.run(&self.pool, progress, &keep)?;
+        let patches = patches.into_inner().expect("no worker panicked");
+        self.take_patches(regrow, patches)
+    }
+
+    /// Puts what a plan gave in place.
+    pub(super) fn take_patches(
+        &mut self,
+        regrow: Regrow,
+        patches: Vec<Patch>,
+    ) -> Result<EditReport, TraceError> {
+        let mut rays = RayCounts::default();
+        patches.iter().for_each(|patch| rays += patch.rays);
+        let (pixels, reason) = (regrow.plan.pixels(), Some(regrow.plan.reason.clone()));
+        let class = match regrow.plan.casts || rays.total() > 0 {
+            true => Class::Regrow,
+            false => Class::Refold,
+        };
+        self.commit(regrow, patches)?;
+        Ok(EditReport { class, reason, rays, pixels, milliseconds: 0.0 })
     }
 
     /// The report of an edit for which everything was just traced, its time still 0.
@@ -219,30 +302,24 @@ impl Session {
         }
     }
 
-    /// What in an edit cannot be had from what is kept.
-    fn needs_rays(&mut self, scene: &Scene, change: &Change) -> Option<String> {
-        if let Some(what) = change.moves_rays {
-            return Some(format!("{what} moves rays"));
+    /// Makes an edit for which shading is enough.
+    fn shade(&mut self, scene: Arc<Scene>, change: &Change) -> EditReport {
+        self.rename_materials(change);
+        let pairs = scene.materials.iter().zip(&change.materials);
+        let ior = |(new, before): (&Material, &Option<u16>)| {
+            before.map_or(new.ior, |before| self.iors[before as usize])
+        };
+        self.iors = pairs.map(ior).collect();
+        let kept = change.lights.iter().flatten();
+        self.keys = kept.map(|&before| self.keys[before as usize]).collect();
+        self.names.lights = self.light_places_after(change);
+        if change.surfaces {
+            self.geometry = Arc::new(self.geometry.with_surfaces_of(&scene));
+            self.names.materials = self.geometry.materials().to_vec();
         }
-        if !change.refold.is_empty() && self.transport.tiles.iter().any(|t| t.highlights.is_none())
-        {
-            return Some("highlight lists were released for memory".into());
-        }
-        if change.terms {
-            let id = self.terms.uncovered(&self.program, &FactorValues::new(scene))?;
-            let factors = self.transport.trie.factors(id);
-            let names: Vec<_> = factors.iter().map(|f| f.describe(scene)).collect();
-            return Some(format!("the branch {} comes alive", names.join(" · ")));
-        }
-        None
-    }
-
-    fn without_rays(&mut self, scene: Arc<Scene>, change: &Change) -> Class {
-        self.scene = scene;
         let mut marks = vec![change.develop; self.transport.tiles.len()];
-        if !change.refold.is_empty() {
-            self.refold(&change.refold, &mut marks);
-        }
+        self.refold(&scene, &change.refold, &mut marks);
+        self.scene = scene;
         if change.terms {
             std::mem::swap(&mut self.before, &mut self.terms.values);
             self.evaluate_terms();
@@ -251,20 +328,50 @@ impl Session {
         if marks.contains(&true) {
             self.draw(Tiles::Marked(&marks));
         }
-        class_without_rays(change)
+        EditReport {
+            class: class_without_rays(change),
+            reason: None,
+            rays: RayCounts::default(),
+            pixels: 0,
+            milliseconds: 0.0,
+        }
+    }
+
+    /// Gives the materials of the matrix the indices that they have in the new scene. Those that are
+    /// no more, and that only pixels show that are grown again, come after all others.
+    fn rename_materials(&mut self, change: &Change) {
+        let old = self.iors.len();
+        let mut index: Vec<u16> = (0..old).map(|i| u16::MAX - (old - 1 - i) as u16).collect();
+        for (&before, new) in change.materials.iter().zip(0..) {
+            before.into_iter().for_each(|before| index[before as usize] = new);
+        }
+        if index.iter().zip(0..).any(|(&new, before)| new != before) {
+            self.transport.rename_materials(&index);
+            self.program = TermProgram::new(&self.transport.trie);
+        }
+    }
+
+    /// Places of the new scene's lights in the list of factors, if all of them stay where they are.
+    fn light_places_after(&self, change: &Change) -> Vec<u16> {
+        let kept = change.lights.iter().flatten();
+        kept.map(|&before| self.names.lights[before as usize]).collect()
     }
 
     /// Folds the highlights of some materials again and marks the tiles that show them.
-    fn refold(&mut self, materials: &[u16], marks: &mut [bool]) {
-        let mut exponents = vec![None; self.scene.materials.len()];
+    fn refold(&mut self, scene: &Scene, materials: &[u16], marks: &mut [bool]) {
+        if materials.is_empty() {
+            return;
+        }
+        let mut exponents = vec![None; scene.materials.len()];
         for &m in materials {
-            exponents[m as usize] = Some(self.scene.materials[m as usize].shininess);
+            exponents[m as usize] = Some(scene.materials[m as usize].shininess);
         }
         let weight = 1.0 / self.transport.samples as f32;
         let tiles = self.transport.tiles.par_iter_mut().zip(marks);
         self.pool.install(|| {
             tiles.for_each_init(HighlightPower::default, |power, (tile, mark)| {
-                *mark |= power.refold(tile, &exponents, weight);
+                // Without lists its pixels are grown again.
+                *mark |= tile.highlights.is_some() && power.refold(tile, &exponents, weight);
             });
         });
     }
@@ -304,7 +411,7 @@ impl Session {
     /// Releases all trees and gives their memory.
     pub(super) fn take_trees(&mut self) -> Forest {
         let tiles = vec![None; self.forest.tiles.len()];
-        let released = Forest { tiles, ..self.forest };
+        let released = Forest { tiles, layout: self.forest.layout, samples: self.forest.samples };
         std::mem::replace(&mut self.forest, released)
     }
 
@@ -334,15 +441,18 @@ impl Session {
     /// What making `scene` the session's would cost.
     pub fn class_of(&mut self, scene: &Scene) -> Class {
         let change = Change::between(&self.scene, scene);
-        match self.needs_rays(scene, &change) {
-            Some(_) => Class::Retrace,
-            None => class_without_rays(&change),
+        match self.work(scene, &change) {
+            Work::Trace(_) => Class::Retrace,
+            Work::Regrow(plan) if plan.casts => Class::Regrow,
+            Work::Regrow(_) => Class::Refold,
+            Work::Shade => class_without_rays(&change),
         }
     }
 
     /// Evaluates every term of the present scene.
     pub fn evaluate_terms(&mut self) {
-        self.terms.evaluate(&self.program, &FactorValues::new(&self.scene));
+        let factors = FactorValues::new(&self.scene).with_lights_at(&self.names.lights);
+        self.terms.evaluate(&self.program, &factors);
     }
 
     /// Shades every pixel anew, as after an edit that touches everything.
@@ -366,17 +476,22 @@ impl Session {
         film
     }
 
-    /// The trees of one tile, grown again if they were released.
+    /// What grows the trees of the present scene, with what is kept of them.
+    fn grower(&self) -> Grower<'_> {
+        let iors = self.geometry.of_solids(&self.iors);
+        Grower::recalling(&self.scene, &self.geometry, self.keys.clone(), &iors)
+    }
+
+    /// The trees of one tile, read from what is kept of them, or grown again.
     pub fn trees(&self, tile: usize, progress: &Progress) -> Result<TileTrees, TraceError> {
-        if let Some(trees) = &self.forest.tiles[tile] {
-            return Ok(trees.clone());
-        }
-        let grower = Grower::new(&self.scene, &self.geometry);
+        let grower = self.grower();
         let mut worker = grower.worker();
         let mut trees = TileTrees::default();
-        for block in 0..crate::film::layout::TILE_BLOCKS {
-            let most = usize::try_from(self.options.memory).unwrap_or(usize::MAX);
-            let grown = grower.block(&mut worker, (tile, block), &mut trees, most, progress);
+        let most = usize::try_from(self.options.memory).unwrap_or(usize::MAX);
+        for block in 0..TILE_BLOCKS {
+            let at = (tile, block);
+            let kept = self.forest.tiles[tile].as_ref().map(|kept| kept.recall(block));
+            let grown = grower.block_again(&mut worker, at, kept, &mut trees, most, progress);
             grown.map_err(|stop| TraceError::of(stop, most))?;
         }
         Ok(trees)

@@ -2,17 +2,18 @@
 
 use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use std::sync::{Mutex, MutexGuard};
+use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
 
-use crate::film::layout::{LANES, Layout, Place, TILE_BLOCKS};
-use crate::fold::Folder;
+use crate::film::layout::{Layout, TILE_BLOCKS};
 use crate::fold::transport::{Highlights, Transport, TransportTile};
 use crate::fold::trie::Trie;
+use crate::fold::{Folder, Names};
 use crate::forest::Forest;
 use crate::forest::grow::{Discard, Grower, MOST_CROSSED, RayCounts, Stop, Worker};
+use crate::forest::kept::KeptTrees;
 use crate::forest::tree::TileTrees;
 use crate::geometry::Geometry;
 use crate::progress::{Cancelled, Progress};
@@ -182,7 +183,7 @@ pub fn trace(
     let mut report = TraceReport::default();
     let threads = outcomes.len() as f64;
     for outcome in outcomes {
-        let Outcome { rays, nodes, folding } = outcome?;
+        let Outcome { grown: _, rays, nodes, folding } = outcome?;
         report.rays += rays;
         report.nodes += nodes;
         report.fold_seconds += folding.as_secs_f64() / threads;
@@ -195,7 +196,7 @@ pub fn trace(
 }
 
 /// The next tile that nobody works on.
-fn claim(next: &AtomicUsize, tiles: usize) -> Option<usize> {
+pub(super) fn claim(next: &AtomicUsize, tiles: usize) -> Option<usize> {
     let tile = next.fetch_add(1, Relaxed);
     (tile < tiles).then_some(tile)
 }
@@ -203,6 +204,7 @@ fn claim(next: &AtomicUsize, tiles: usize) -> Option<usize> {
 /// All that the workers of one trace share.
 struct Job<'a> {
     grower: Grower<'a>,
+    names: Names,
     layout: Layout,
     samples: u32,
     shininess: Vec<Option<f32>>,
@@ -218,20 +220,20 @@ struct Job<'a> {
 }
 
 /// A block's trees may always take this many bytes while it is folded.
-const LEAST_BLOCK_LIMIT: usize = 1 << 26;
+pub(super) const LEAST_BLOCK_LIMIT: usize = 1 << 26;
 
 /// What is there of one tile.
 #[derive(Default)]
 struct Slot {
     /// Memory of an earlier trace, until the tile is traced.
-    old: Option<TileTrees>,
-    trees: Option<TileTrees>,
+    old: Option<KeptTrees>,
+    trees: Option<Arc<KeptTrees>>,
     transport: TransportTile,
 }
 
 impl Slot {
     fn tree_bytes(&self) -> usize {
-        self.trees.as_ref().map_or(0, TileTrees::bytes)
+        self.trees.as_ref().map_or(0, |trees| trees.bytes())
     }
 
     fn list_bytes(&self) -> usize {
@@ -271,8 +273,10 @@ impl Ledger {
     }
 }
 
-/// What one worker counted.
+/// What one worker counted, and its scratch.
+#[derive(Default)]
 struct Outcome {
+    grown: TileTrees,
     rays: RayCounts,
     nodes: u64,
     folding: Duration,
@@ -293,13 +297,14 @@ impl<'a> Job<'a> {
         let old_tiles = (0..reuse.tiles.len()).collect();
         let ledger =
             Ledger { bytes: reuse.bytes(), old: old_tiles, trees: Vec::new(), lists: Vec::new() };
-        let mut old = reuse.tiles.into_iter();
+        let mut old = reuse.tiles.into_iter().map(|trees| trees.and_then(Arc::into_inner));
         let slot = |_| Mutex::new(Slot { old: old.next().flatten(), ..Slot::default() });
         progress.begin(layout.tiles() as u64);
         let budget = usize::try_from(keep.bytes).unwrap_or(usize::MAX);
         Job {
             kept: keep.what,
             grower: Grower::new(scene, geometry),
+            names: Names::new(geometry.materials(), scene.lights.len()),
             layout,
             samples: scene.trace.samples,
             shininess: scene.materials.iter().map(|m| Some(m.shininess)).collect(),
@@ -317,8 +322,8 @@ impl<'a> Job<'a> {
     fn work(&self) -> Result<Outcome, TraceError> {
         let mut worker = self.grower.worker();
         let mut folder = Folder::default();
-        let mut scratch = TileTrees::default();
-        let mut outcome = Outcome { rays: RayCounts::default(), nodes: 0, folding: Duration::ZERO };
+        let mut scratch = KeptTrees::default();
+        let mut outcome = Outcome::default();
         while let Some(tile) = claim(&self.next, self.layout.tiles()) {
             // Memory of the earlier trace is written at once, new memory is taken when its size is
             // known.
@@ -330,7 +335,7 @@ impl<'a> Job<'a> {
             outcome.folding += folding.elapsed();
             // A clone takes no more memory than it needs.
             let kept = (whole && self.kept == Kept::Trees)
-                .then(|| old.map_or_else(|| scratch.clone(), TileTrees::trimmed));
+                .then(|| Arc::new(old.map_or_else(|| scratch.clone(), KeptTrees::trimmed)));
             self.store(tile, kept, transport)?;
             self.progress.step();
         }
@@ -344,28 +349,27 @@ impl<'a> Job<'a> {
         tile: usize,
         worker: &mut Worker,
         folder: &mut Folder,
-        trees: &mut TileTrees,
+        trees: &mut KeptTrees,
         outcome: &mut Outcome,
     ) -> Result<bool, TraceError> {
         folder.begin_tile();
         trees.clear();
+        let grown = &mut outcome.grown;
         let mut whole = true;
         for block in 0..TILE_BLOCKS {
-            let before = trees.nodes.len();
+            grown.clear();
             let at = (tile, block);
-            let most = trees.used_bytes() + self.tile_limit.max(LEAST_BLOCK_LIMIT);
-            let grown = self.grower.block(worker, at, trees, most, self.progress);
-            grown.map_err(|stop| TraceError::of(stop, self.budget))?;
-            outcome.nodes += (trees.nodes.len() - before) as u64;
+            let most = self.tile_limit.max(LEAST_BLOCK_LIMIT);
+            let stopped = self.grower.block(worker, at, grown, most, self.progress);
+            stopped.map_err(|stop| TraceError::of(stop, self.budget))?;
+            outcome.nodes += grown.nodes.len() as u64;
             let folding = Instant::now();
-            let covered: [bool; LANES] = std::array::from_fn(|lane| {
-                self.layout.pixel(Place { tile, block, lane }).is_some()
-            });
-            folder.block(&mut trees.read(trees.blocks.len() - 1), covered, self.samples);
+            let covered = self.layout.covered(tile, block);
+            folder.block(&mut grown.read(0), covered, self.samples, &self.names);
             outcome.folding += folding.elapsed();
-            whole &= trees.used_bytes() <= self.tile_limit;
-            if !whole {
-                trees.clear();
+            if whole {
+                trees.push_grown(grown, self.grower.keys());
+                whole = trees.used_bytes() <= self.tile_limit;
             }
         }
         Ok(whole)
@@ -386,9 +390,7 @@ impl<'a> Job<'a> {
             trie.mark(known, node.marks);
             global[id] = known;
         }
-        for term in &mut tile.terms {
-            *term = global[*term as usize];
-        }
+        tile.renumber(|id| global[id as usize]);
         tile
     }
 
@@ -397,7 +399,7 @@ impl<'a> Job<'a> {
     fn store(
         &self,
         tile: usize,
-        trees: Option<TileTrees>,
+        trees: Option<Arc<KeptTrees>>,
         transport: TransportTile,
     ) -> Result<(), TraceError> {
         // Whoever holds the ledger may lock a slot, never the other way round.
@@ -414,10 +416,10 @@ impl<'a> Job<'a> {
     }
 
     /// Memory of the earlier trace for a tile: from now on it counts as the tile's own need.
-    fn take_old(&self, tile: usize) -> Option<TileTrees> {
+    fn take_old(&self, tile: usize) -> Option<KeptTrees> {
         let mut ledger = self.ledger.lock().expect("no worker panicked");
         let old = self.slot(tile).old.take();
-        ledger.bytes -= old.as_ref().map_or(0, TileTrees::bytes);
+        ledger.bytes -= old.as_ref().map_or(0, KeptTrees::bytes);
         old
     }
 
@@ -437,11 +439,7 @@ impl<'a> Job<'a> {
         let slots = self.slots.into_iter().map(|s| s.into_inner().expect("no worker panicked"));
         let (trees, mut tiles): (Vec<_>, Vec<_>) = slots.map(|s| (s.trees, s.transport)).unzip();
         pool.install(|| {
-            tiles.par_iter_mut().for_each(|tile| {
-                for term in &mut tile.terms {
-                    *term = ranks[*term as usize];
-                }
-            });
+            tiles.par_iter_mut().for_each(|tile| tile.renumber(|id| ranks[id as usize]));
         });
         let (layout, samples) = (self.layout, self.samples);
         let forest = Forest { layout, samples, tiles: trees };

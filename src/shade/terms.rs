@@ -112,18 +112,22 @@ impl TermValues {
         }
     }
 
-    /// Applies the rule of liveness to every path, and gives the first frontier that lives, if any:
-    /// the kept trees lack its branch. Values are left alone.
-    pub fn uncovered(&mut self, program: &TermProgram, factors: &FactorValues) -> Option<u32> {
+    /// Applies the rule of liveness to every path, and gives the frontier that lives: the kept trees
+    /// lack its branches. Values are left alone.
+    pub fn uncovered(
+        &mut self,
+        program: &TermProgram,
+        factors: &FactorValues,
+    ) -> impl Iterator<Item = u32> {
         self.follow_paths(program, factors);
-        let lives = |f: &&Frontier| match f.factor.kind() {
+        let lives = move |f: &&Frontier| match f.factor.kind() {
             Kind::Shadow => {
                 let reached = self.weights[f.parent as usize].depth != DEAD;
                 reached && !factors.value(f.factor).is_black()
             }
             _ => self.weights[f.id as usize].depth != DEAD,
         };
-        program.frontier.iter().find(lives).map(|f| f.id)
+        program.frontier.iter().filter(lives).map(|f| f.id)
     }
 
     fn follow_paths(&mut self, program: &TermProgram, factors: &FactorValues) {
@@ -198,7 +202,7 @@ mod tests {
 
     fn uncovered(scene: &Scene) -> Option<u32> {
         let program = TermProgram::new(&trie().0);
-        TermValues::default().uncovered(&program, &FactorValues::new(scene))
+        TermValues::default().uncovered(&program, &FactorValues::new(scene)).next()
     }
 
     #[test]
@@ -250,7 +254,7 @@ mod tests {
             let mut scene = scene(reflect);
             (scene.trace.cutoff, scene.trace.depth) = (cutoff, depth);
             let values = FactorValues::new(&scene);
-            let lives = TermValues::default().uncovered(&program, &values).is_some();
+            let lives = TermValues::default().uncovered(&program, &values).next().is_some();
             assert_eq!(frontier_lives(&factors, &values), lives, "{reflect} {cutoff} {depth}");
             both[usize::from(lives)] += 1;
         }

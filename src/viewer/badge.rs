@@ -2,7 +2,7 @@
 
 use eframe::egui::{Align2, Color32, FontId, Role, Sense, Ui, Vec2, WidgetInfo, vec2};
 
-use crate::session::cost::Cost;
+use crate::session::cost::{Cost, Pixels};
 
 /// How dear an edit is, for its colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,9 +18,11 @@ pub(super) fn text(cost: Option<Cost>) -> String {
     match cost {
         None => "…".into(),
         Some(Cost::Instant) => "instant".into(),
-        Some(Cost::InstantUpTo(x)) => format!("instant ≤ {}", rounded(x, f64::floor)),
-        Some(Cost::InstantDownTo(x)) => format!("instant ≥ {}", rounded(x, f64::ceil)),
+        Some(Cost::InstantUpTo(x, _)) => format!("instant ≤ {}", rounded(x, f64::floor)),
+        Some(Cost::InstantDownTo(x, _)) => format!("instant ≥ {}", rounded(x, f64::ceil)),
         Some(Cost::Refold) => "refold".into(),
+        Some(Cost::Reread(pixels)) => format!("rereads {}", share(pixels)),
+        Some(Cost::Regrow(pixels)) => format!("traces {}", share(pixels)),
         Some(Cost::TraceAll) => "traces all".into(),
     }
 }
@@ -30,18 +32,39 @@ pub(super) fn explanation(cost: Option<Cost>) -> String {
     match cost {
         None => "The cost is being worked out".into(),
         Some(Cost::Instant) => "Instant: no ray is cast, whatever the value".into(),
-        Some(Cost::InstantUpTo(x)) => format!(
+        Some(Cost::InstantUpTo(x, pixels)) => format!(
             "Instant up to {}; above that branches of the ray trees come alive that were not \
-             traced: traces all",
-            rounded(x, f64::floor)
+             traced: traces {} of the pixels, and with higher values perhaps more",
+            rounded(x, f64::floor),
+            share(pixels)
         ),
-        Some(Cost::InstantDownTo(x)) => format!(
+        Some(Cost::InstantDownTo(x, pixels)) => format!(
             "Instant down to {}; below that branches of the ray trees come alive that were not \
-             traced: traces all",
-            rounded(x, f64::ceil)
+             traced: traces {} of the pixels, and with lower values perhaps more",
+            rounded(x, f64::ceil),
+            share(pixels)
+        ),
+        Some(Cost::Reread(pixels)) => format!(
+            "The kept ray trees of {} of the pixels are read again; no ray is cast",
+            share(pixels)
+        ),
+        Some(Cost::Regrow(pixels)) => format!(
+            "Traces new rays for {} of the pixels; the kept ray trees answer all others",
+            share(pixels)
         ),
         Some(Cost::Refold) => "Highlights are summed again from kept angles; no ray is cast".into(),
         Some(Cost::TraceAll) => "Moves rays: the picture is traced anew, coarse first".into(),
+    }
+}
+
+/// Per cent of the picture, never 0 for some and never 100 for not all.
+fn share(Pixels { count, of }: Pixels) -> String {
+    let percent = count as f64 * 100.0 / of as f64;
+    match () {
+        () if count == 0 => "0 %".into(),
+        () if percent < 1.0 => "< 1 %".into(),
+        () if count < of => format!("{} %", percent.round().min(99.0)),
+        () => "100 %".into(),
     }
 }
 
@@ -64,8 +87,9 @@ fn price(cost: Option<Cost>) -> Price {
     match cost {
         None => Price::Unknown,
         Some(Cost::Instant) => Price::Free,
-        Some(Cost::InstantUpTo(_) | Cost::InstantDownTo(_) | Cost::Refold) => Price::Mixed,
-        Some(Cost::TraceAll) => Price::Dear,
+        Some(Cost::InstantUpTo(..) | Cost::InstantDownTo(..)) => Price::Mixed,
+        Some(Cost::Refold | Cost::Reread(_)) => Price::Mixed,
+        Some(Cost::Regrow(_) | Cost::TraceAll) => Price::Dear,
     }
 }
 
@@ -103,12 +127,23 @@ pub(super) fn badge_ui(ui: &mut Ui, name: &str, cost: Option<Cost>, width: f32) 
 mod tests {
     use super::*;
 
+    const SOME: Pixels = Pixels { count: 3, of: 16 };
+
     #[test]
     fn a_threshold_is_rounded_to_the_safe_side() {
-        assert_eq!(text(Some(Cost::InstantUpTo(0.447_91))), "instant ≤ 0.447");
-        assert_eq!(text(Some(Cost::InstantDownTo(0.001_234_5))), "instant ≥ 0.00124");
-        assert_eq!(text(Some(Cost::InstantUpTo(0.0))), "instant ≤ 0");
-        assert_eq!(text(Some(Cost::InstantUpTo(10.0))), "instant ≤ 10");
-        assert_eq!(text(Some(Cost::InstantUpTo(120.0))), "instant ≤ 120");
+        assert_eq!(text(Some(Cost::InstantUpTo(0.447_91, SOME))), "instant ≤ 0.447");
+        assert_eq!(text(Some(Cost::InstantDownTo(0.001_234_5, SOME))), "instant ≥ 0.00124");
+        assert_eq!(text(Some(Cost::InstantUpTo(0.0, SOME))), "instant ≤ 0");
+        assert_eq!(text(Some(Cost::InstantUpTo(10.0, SOME))), "instant ≤ 10");
+        assert_eq!(text(Some(Cost::InstantUpTo(120.0, SOME))), "instant ≤ 120");
+    }
+
+    #[test]
+    fn a_share_is_neither_none_nor_all_unless_it_is() {
+        let of = |count| share(Pixels { count, of: 1000 });
+        assert_eq!(
+            [0, 1, 9, 10, 126, 999, 1000].map(of),
+            ["0 %", "< 1 %", "< 1 %", "1 %", "13 %", "99 %", "100 %"]
+        );
     }
 }

@@ -54,7 +54,7 @@ impl Badges {
     }
 
     /// Computes one cost, if it is time, and shows what is known from time to time.
-    pub(super) fn work(&mut self, session: &Session, board: &Board) {
+    pub(super) fn work(&mut self, session: &mut Session, board: &Board) {
         if self.wait() != Some(Duration::ZERO) {
             return;
         }

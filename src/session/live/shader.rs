@@ -210,7 +210,7 @@ impl Shader {
             self.report();
             self.board.wake();
         } else if let Some(shown) =
-            self.preview.as_ref().map(|p| &p.session).or(self.whole.as_ref())
+            self.preview.as_mut().map(|p| &mut p.session).or(self.whole.as_mut())
         {
             self.badges.work(shown, &self.board);
         }
@@ -270,7 +270,7 @@ impl Shader {
     /// Edits and shows the whole picture if that needs no ray; a trace is then for nothing.
     fn reach_whole(&mut self, wanted: &Arc<Scene>, taken: Instant) -> Result<(), String> {
         let whole = self.whole.as_mut().ok_or("the scene is new")?;
-        let report = whole.edit_without_rays(wanted)?;
+        let report = whole.edit_without_rays(wanted).map_err(|work| work.reason().to_owned())?;
         self.preview = None;
         self.hold = None;
         self.job.iter_mut().for_each(Running::drop_it);

@@ -420,7 +420,7 @@ fn watched_costs_follow_the_scene_shown() {
         let mut session = fresh(&scene);
         session.edit_without_rays(&Arc::new(edited.clone())).unwrap();
         let cost =
-            |path: &String| Some((path.clone(), crate::session::cost::cost(&session, path)?));
+            |path: &String| Some((path.clone(), crate::session::cost::cost(&mut session, path)?));
         paths.iter().filter_map(cost).collect::<BTreeMap<_, _>>()
     };
     assert_eq!(*window.live.costs(), expected(&scene));

@@ -4,10 +4,12 @@ use rayforest::progress::Progress;
 use rayforest::scene::path::{self, Parameter, parameters};
 use rayforest::scene::range::Kind;
 use rayforest::scene::{Scene, check};
-use rayforest::session::cost::{Cost, cost};
+use rayforest::session::cost::{Cost, Pixels, cost};
 use rayforest::session::{Class, Options, Session};
 
 use super::{SHIPPED, open, set, shipped};
+
+const NONE: Pixels = Pixels { count: 0, of: 1 };
 
 /// The numbers of a TOML value.
 fn numbers(value: &str) -> Vec<f64> {
@@ -70,10 +72,10 @@ fn lie(session: &mut Session, parameter: &Parameter, cost: Cost) -> Option<Strin
         (!holds(class)).then(|| format!("{path} is {cost:?}, but an edit is {class}"))
     };
     let instant = |class: Class| class <= Class::Reshade;
-    let traced = |class: Class| class == Class::Retrace;
+    let traced = |class: Class| class == Class::Regrow;
     match cost {
-        Cost::InstantUpTo(limit) | Cost::InstantDownTo(limit) => {
-            let up = matches!(cost, Cost::InstantUpTo(_));
+        Cost::InstantUpTo(limit, _) | Cost::InstantDownTo(limit, _) => {
+            let up = matches!(cost, Cost::InstantUpTo(..));
             let (within, beyond) = around(parameter, limit, up);
             let half = if up { within / 2.0 } else { within.midpoint(1.0) };
             claim(&raised(&scene, parameter, within), &instant)
@@ -90,13 +92,22 @@ fn lie(session: &mut Session, parameter: &Parameter, cost: Cost) -> Option<Strin
         Cost::Refold => {
             others(&scene, parameter).iter().find_map(|e| claim(e, &|c| c == Class::Refold))
         }
-        Cost::TraceAll => others(&scene, parameter).iter().find_map(|e| claim(e, &traced)),
+        Cost::Reread(_) => {
+            others(&scene, parameter).iter().find_map(|e| claim(e, &|c| c >= Class::Refold))
+        }
+        Cost::Regrow(_) => {
+            let grown = |class: Class| class == Class::Regrow || class == Class::Refold;
+            others(&scene, parameter).iter().find_map(|e| claim(e, &grown))
+        }
+        Cost::TraceAll => {
+            others(&scene, parameter).iter().find_map(|e| claim(e, &|c| c == Class::Retrace))
+        }
     }
 }
 
 /// Holds the costs of all parameters; how many of each kind there are.
-fn hold(session: &mut Session, what: &str) -> [usize; 5] {
-    let mut kinds = [0; 5];
+fn hold(session: &mut Session, what: &str) -> [usize; 7] {
+    let mut kinds = [0; 7];
     for parameter in parameters(&session.scene().clone()) {
         let path = &parameter.path;
         let cost = cost(session, path).unwrap_or_else(|| panic!("{what}: {path} has no cost"));
@@ -105,10 +116,12 @@ fn hold(session: &mut Session, what: &str) -> [usize; 5] {
         }
         kinds[match cost {
             Cost::Instant => 0,
-            Cost::InstantUpTo(_) => 1,
-            Cost::InstantDownTo(_) => 2,
+            Cost::InstantUpTo(..) => 1,
+            Cost::InstantDownTo(..) => 2,
             Cost::Refold => 3,
-            Cost::TraceAll => 4,
+            Cost::Reread(_) => 4,
+            Cost::Regrow(_) => 5,
+            Cost::TraceAll => 6,
         }] += 1;
     }
     kinds
@@ -116,7 +129,7 @@ fn hold(session: &mut Session, what: &str) -> [usize; 5] {
 
 #[test]
 fn every_badge_of_every_scene_is_the_class_of_the_edit() {
-    let mut all = [0; 5];
+    let mut all = [0; 7];
     for name in SHIPPED {
         let mut session = open(&shipped(name, [48, 32], 2), 2);
         for (sum, kind) in all.iter_mut().zip(hold(&mut session, name)) {
@@ -148,15 +161,16 @@ fn highlights_that_were_released_are_traced() {
     let matrix = open(&scene, 1).transport().bytes() as u64;
     let budget = Options { threads: 1, memory: matrix + matrix / 10 };
     let mut session = Session::open(scene, budget, &Progress::default()).unwrap();
-    assert_eq!(cost(&session, "materials.tiles.shininess"), Some(Cost::TraceAll));
+    let shown = cost(&mut session, "materials.tiles.shininess");
+    assert!(matches!(shown, Some(Cost::Regrow(pixels)) if pixels.count > 0), "{shown:?}");
     hold(&mut session, "released");
 }
 
 #[test]
 fn what_is_no_parameter_has_no_cost() {
-    let session = open(&shipped("mesh", [16, 9], 1), 1);
-    assert_eq!(cost(&session, "materials.slate.shine"), None);
-    assert_eq!(cost(&session, "materials"), None);
+    let mut session = open(&shipped("mesh", [16, 9], 1), 1);
+    assert_eq!(cost(&mut session, "materials.slate.shine"), None);
+    assert_eq!(cost(&mut session, "materials"), None);
 }
 
 #[test]
@@ -165,23 +179,24 @@ fn a_cost_that_lies_is_caught() {
     let all = parameters(session.scene());
     let mut lies = |path: &str, claimed: Cost| {
         let parameter = all.iter().find(|p| p.path == path).unwrap();
-        assert_ne!(cost(&session, path), Some(claimed), "{path}: a lie is wanted");
+        assert_ne!(cost(&mut session, path), Some(claimed), "{path}: a lie is wanted");
         assert!(lie(&mut session, parameter, claimed).is_some(), "{path}: {claimed:?} passed");
     };
-    lies("materials.glass.diffuse", Cost::InstantUpTo(0.5));
+    lies("materials.glass.diffuse", Cost::InstantUpTo(0.5, NONE));
     lies("materials.glass.diffuse", Cost::TraceAll);
     lies("materials.glass.shininess", Cost::Instant);
     lies("materials.tiles.reflect", Cost::Instant);
     lies("camera.eye", Cost::Instant);
     lies("camera.eye", Cost::Refold);
-    lies("trace.cutoff", Cost::InstantDownTo(0.5));
-    lies("trace.depth", Cost::InstantUpTo(64.0 - 1.0));
-    let Some(Cost::InstantUpTo(limit)) = cost(&session, "materials.tiles.reflect") else {
+    lies("trace.cutoff", Cost::InstantDownTo(0.5, NONE));
+    lies("trace.depth", Cost::InstantUpTo(64.0 - 1.0, NONE));
+    let Some(Cost::InstantUpTo(limit, pixels)) = cost(&mut session, "materials.tiles.reflect")
+    else {
         panic!("tiles may become a mirror");
     };
     for wrong in [(limit as f32).next_up(), (limit as f32).next_down()] {
         let parameter = all.iter().find(|p| p.path == "materials.tiles.reflect").unwrap();
-        let claimed = Cost::InstantUpTo(f64::from(wrong));
+        let claimed = Cost::InstantUpTo(f64::from(wrong), pixels);
         assert!(lie(&mut session, parameter, claimed).is_some(), "{claimed:?} passed");
     }
 }

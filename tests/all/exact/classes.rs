@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use rayforest::color::Rgb;
 use rayforest::progress::Progress;
 use rayforest::scene::path::parameters;
-use rayforest::scene::{Lens, Light, Scene, read};
+use rayforest::scene::{Lens, Light, Material, Paint, Scene, read};
 use rayforest::session::{Class, Session};
 
 use super::comes_alive::comes_alive;
@@ -55,8 +56,16 @@ fn edit_is(session: &mut Session, scene: Scene, expected: Class, what: &str) {
                 "{what}: traced for nothing"
             );
         }
+    } else if report.pixels > 0 {
+        let rays = report.rays;
+        assert_eq!(rays.camera, 0, "{what}: the kept trees know where eye rays end");
+        assert!(report.class == Class::Regrow || rays.total() == 0, "{what}: {rays:?}");
+        assert!(rays.total() < fresh.trace_report().rays.total(), "{what}: {rays:?}");
+        if report.reason.is_some_and(|reason| reason.contains("comes alive")) {
+            assert!(comes_alive(&kept, fresh.forest(), session.scene()), "{what}: for nothing");
+        }
     } else {
-        assert_eq!((report.rays.total(), report.pixels), (0, 0), "{what}: rays and pixels");
+        assert_eq!(report.rays.total(), 0, "{what}: rays without pixels");
         assert!(*session.forest() == kept, "{what}: trees were touched");
         assert!(
             !comes_alive(&kept, fresh.forest(), session.scene()),
@@ -143,25 +152,129 @@ fn names_cost_nothing() {
 }
 
 #[test]
-fn what_is_added_removed_or_exchanged_is_traced() {
+fn what_is_added_removed_or_exchanged() {
+    use Class::{Refold, Regrow, Reshade, Retrace};
     let scene = all_kinds();
     type Alteration = fn(&mut Scene);
-    let changes: [(&str, Alteration); 7] = [
-        ("a light more", |s| s.lights.push(Light::new("third"))),
-        ("a light less", |s| drop(s.lights.pop())),
-        ("no light", |s| s.lights.clear()),
-        ("a solid less", |s| drop(s.solids.remove(1))),
-        ("another order of solids", |s| s.solids.swap(0, 3)),
-        ("a point becomes a direction", |s| s.lights[0].place = s.lights[1].place.clone()),
-        ("a parallel view", |s| s.camera.lens = Lens::Parallel { height: 4.5 }),
+    let changes: [(&str, Alteration, Class, Class); 13] = [
+        ("a light more", |s| s.lights.push(Light::new("third")), Regrow, Reshade),
+        ("a light more, the first", |s| s.lights.insert(0, Light::new("zero")), Regrow, Reshade),
+        ("a light more, in between", |s| s.lights.insert(1, Light::new("mid")), Regrow, Reshade),
+        ("a light less", |s| drop(s.lights.pop()), Reshade, Regrow),
+        ("the first light less", |s| drop(s.lights.remove(0)), Reshade, Regrow),
+        ("no light", |s| s.lights.clear(), Reshade, Regrow),
+        ("lights exchanged", |s| s.lights.swap(0, 1), Regrow, Regrow),
+        ("a material more", |s| s.materials.push(Material::new("new")), Class::None, Class::None),
+        ("a solid less", |s| drop(s.solids.remove(1)), Retrace, Retrace),
+        ("another order of solids", |s| s.solids.swap(0, 3), Retrace, Retrace),
+        (
+            "a point becomes a direction",
+            |s| s.lights[0].place = s.lights[1].place.clone(),
+            Regrow,
+            Regrow,
+        ),
+        (
+            "another kind of texture",
+            |s| s.materials[0].paint = Paint::Solid(Rgb::grey(0.4)),
+            Refold,
+            Refold,
+        ),
+        ("a parallel view", |s| s.camera.lens = Lens::Parallel { height: 4.5 }, Retrace, Retrace),
     ];
     let mut session = open(&scene, 2);
-    for (what, change) in changes {
+    for (what, change, there, back) in changes {
         let mut edited = scene.clone();
         change(&mut edited);
-        edit_is(&mut session, edited, Class::Retrace, what);
-        edit_is(&mut session, scene.clone(), Class::Retrace, what);
+        edit_is(&mut session, edited, there, what);
+        edit_is(&mut session, scene.clone(), back, &format!("{what}, undone"));
     }
+}
+
+/// A light that is gone leaves a gap in the list of factors; what comes after finds its place.
+#[test]
+fn lights_come_and_go() {
+    let mut session = open(&all_kinds(), 2);
+    let mut scene = all_kinds();
+    let third = Light { intensity: Rgb([0.1, 0.4, 0.2]), ..Light::new("third") };
+    scene.lights.insert(1, third);
+    edit_is(&mut session, scene.clone(), Class::Regrow, "three lights");
+    scene.lights.remove(0);
+    edit_is(&mut session, scene.clone(), Class::Reshade, "two of three");
+    set(&mut scene, "lights.sun.intensity", "0.9");
+    edit_is(&mut session, scene.clone(), Class::Reshade, "brighter");
+    set(&mut scene, "materials.tiles.reflect", "0.4");
+    edit_is(&mut session, scene.clone(), Class::Regrow, "a mirror below them");
+    set(&mut scene, "lights.third.point", "[0, -3, 4]");
+    edit_is(&mut session, scene.clone(), Class::Regrow, "moved");
+    scene.lights.swap(0, 1);
+    scene.lights.push(Light::new("fourth"));
+    edit_is(&mut session, scene.clone(), Class::Regrow, "another order, and one more");
+    scene.lights.remove(1);
+    set(&mut scene, "materials.glass.ior", "1.3");
+    edit_is(&mut session, scene.clone(), Class::Regrow, "one less, and another glass");
+    scene.lights.clear();
+    edit_is(&mut session, scene, Class::Reshade, "in the dark");
+}
+
+/// Materials that no solid has come and go without work, and others keep their surfaces.
+#[test]
+fn materials_come_and_go() {
+    let mut session = open(&all_kinds(), 2);
+    let mut scene = all_kinds();
+    scene.materials.insert(1, Material::new("unused"));
+    scene.solids.iter_mut().filter(|s| s.material >= 1).for_each(|s| s.material += 1);
+    edit_is(&mut session, scene.clone(), Class::None, "one in between");
+    set(&mut scene, "materials.glass.shininess", "9");
+    edit_is(&mut session, scene.clone(), Class::Refold, "a refold under another index");
+    set(&mut scene, "materials.plain.reflect", "0.3");
+    edit_is(&mut session, scene.clone(), Class::Regrow, "a branch under another index");
+    scene.materials.swap_remove(1);
+    assert_eq!(scene.materials[1].name, "brass");
+    for solid in &mut scene.solids {
+        solid.material = match solid.material {
+            0 => 0,
+            6 => 1,
+            other => other,
+        };
+    }
+    edit_is(&mut session, scene.clone(), Class::Refold, "another order");
+    set(&mut scene, "solids.cube.material", "brass");
+    edit_is(&mut session, scene.clone(), Class::Regrow, "another material");
+    let plain = scene.materials.iter().position(|m| m.name == "plain").unwrap();
+    scene.materials.remove(plain);
+    scene.solids.iter_mut().filter(|s| s.material > plain).for_each(|s| s.material -= 1);
+    edit_is(&mut session, scene.clone(), Class::None, "one that no solid has any more");
+    let mirror = scene.materials.iter().position(|m| m.name == "mirror").unwrap();
+    scene.materials.remove(mirror);
+    for solid in &mut scene.solids {
+        solid.material = match solid.material {
+            m if m == mirror => 0,
+            m if m > mirror => m - 1,
+            m => m,
+        };
+    }
+    edit_is(&mut session, scene, Class::Regrow, "one that some solids had");
+}
+
+/// While nothing passes through a material its index of refraction costs nothing; it is made up for
+/// when something does.
+#[test]
+fn an_index_of_refraction_that_did_not_matter() {
+    let mut session = open(&all_kinds(), 2);
+    let mut scene = all_kinds();
+    let mut edit = |path: &str, value: &str, class: Class| {
+        set(&mut scene, path, value);
+        edit_is(&mut session, scene.clone(), class, &format!("{path} = {value}"));
+    };
+    edit("materials.glass.transmit", "0", Class::Reshade);
+    edit("materials.glass.ior", "1.1", Class::None);
+    edit("materials.tiles.reflect", "0.3", Class::Regrow);
+    edit("materials.glass.ior", "1.5", Class::None);
+    edit("materials.glass.transmit", "0.001", Class::Regrow);
+    edit("materials.glass.transmit", "0.7", Class::Regrow);
+    edit("materials.brass.ior", "0.7", Class::None);
+    edit("materials.brass.reflect", "[1.5, 0.2, 0.1]", Class::Regrow);
+    edit("materials.brass.ior", "1.7", Class::Regrow);
 }
 
 #[test]
@@ -177,7 +290,7 @@ fn several_parameters_at_once_cost_what_the_dearest_costs() {
     edit_is(&mut session, edited.clone(), Class::Refold, "three");
     set(&mut edited, "materials.mirror.shininess", "50");
     set(&mut edited, "materials.tiles.reflect", "0.5");
-    edit_is(&mut session, edited.clone(), Class::Retrace, "two with a branch");
+    edit_is(&mut session, edited.clone(), Class::Regrow, "two with a branch");
     set(&mut edited, "lights.key.on", "false");
     set(&mut edited, "camera.fov_degrees", "41");
     edit_is(&mut session, edited, Class::Retrace, "two with the camera");

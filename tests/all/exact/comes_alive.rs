@@ -1,7 +1,8 @@
 //! The judge of classes: whether a fresh trace has anything that the kept trees lack.
 
 use rayforest::forest::Forest;
-use rayforest::forest::tree::{BLOCKED, Branch, TileTrees};
+use rayforest::forest::kept::KeptTrees;
+use rayforest::forest::tree::{BLOCKED, Branch};
 use rayforest::scene::Scene;
 use rayforest::scene::factor::FactorValues;
 use rayforest::session::Session;
@@ -14,30 +15,32 @@ use super::{open, set, shipped};
 /// It reads trees alone, and knows nothing of terms, frontiers marked in them, or changes.
 pub(super) fn comes_alive(kept: &Forest, fresh: &Forest, scene: &Scene) -> bool {
     let opaque = FactorValues::new(scene).opaque();
+    let opaque: Vec<bool> = scene.solids.iter().map(|solid| opaque[solid.material]).collect();
     kept.tiles.iter().zip(&fresh.tiles).any(|(kept, fresh)| {
         let kept = kept.as_ref().expect("kept trees of every tile");
         let fresh = fresh.as_ref().expect("fresh trees of every tile");
         let mut pair = Pair { kept: Cursor::new(kept), fresh: Cursor::new(fresh), opaque: &opaque };
         assert_eq!(kept.hits, fresh.hits, "eye rays do not depend on parameters");
-        kept.hits.iter().any(|hit| *hit && pair.node())
+        let hits: u32 = kept.hits.iter().map(|word| word.count_ones()).sum();
+        (0..hits).any(|_| pair.node())
     })
 }
 
 /// Reads a tile's trees in preorder.
 struct Cursor<'a> {
-    trees: &'a TileTrees,
+    trees: &'a KeptTrees,
     node: usize,
     light: usize,
     crossing: usize,
 }
 
 impl<'a> Cursor<'a> {
-    fn new(trees: &'a TileTrees) -> Cursor<'a> {
+    fn new(trees: &'a KeptTrees) -> Cursor<'a> {
         Cursor { trees, node: 0, light: 0, crossing: 0 }
     }
 
     /// The witness that stopped the next light's shadow ray, if one did.
-    fn witness(&mut self) -> Option<u16> {
+    fn witness(&mut self) -> Option<u32> {
         let blocked = self.trees.lights[self.light].crossed == BLOCKED;
         let count = if blocked { 1 } else { usize::from(self.trees.lights[self.light].crossed) };
         let first = self.trees.crossings.get(self.crossing).copied();
@@ -75,8 +78,10 @@ impl Pair<'_> {
         assert_eq!((kept.t, kept.primitive), (fresh.t, fresh.primitive), "the same rays");
         self.kept.node += 1;
         self.fresh.node += 1;
-        for _ in 0..kept.lights {
+        for _ in 0..fresh.lights {
             self.fresh.witness();
+        }
+        for _ in 0..kept.lights {
             if self.kept.witness().is_some_and(|m| !self.opaque[m as usize]) {
                 return true;
             }

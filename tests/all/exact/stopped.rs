@@ -110,7 +110,7 @@ fn a_cancelled_edit_leaves_scene_and_picture_and_the_next_ones_are_exact() {
     let edits = [
         ("materials.ruby.filter", "[0.4, 0.2, 0.3]", Class::Reshade),
         ("materials.amber.shininess", "12", Class::Refold),
-        ("materials.tiles.reflect", "0.3", Class::Retrace),
+        ("materials.tiles.reflect", "0.3", Class::Regrow),
         ("materials.tiles.reflect", "0.1", Class::Reshade),
         ("camera.fov_degrees", "40", Class::Retrace),
     ];

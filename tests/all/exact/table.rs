@@ -1,6 +1,6 @@
 //! What every parameter of the scene of all kinds costs, value by value.
 
-use rayforest::session::Class::{self, Refold, Reshade, Retrace};
+use rayforest::session::Class::{self, None as Nothing, Refold, Regrow, Reshade, Retrace};
 
 /// A scene with every kind of light, material and solid.
 pub(super) const SCENE: &str = r#"
@@ -96,10 +96,10 @@ const COLOR: &[(&str, Class)] = &[
 /// An opaque material that lies between some point and a light: the least transmission lets light
 /// through where there was shadow.
 const LETS_LIGHT_THROUGH: &[(&str, Class)] = &[
-    ("0.004", Retrace),
+    ("0.004", Regrow),
     ("0", Reshade),
     ("0.004", Reshade),
-    ("0.5", Retrace),
+    ("0.5", Regrow),
     ("[0, 0.2, 0]", Reshade),
     ("0", Reshade),
     ("0.5", Reshade),
@@ -108,9 +108,9 @@ const LETS_LIGHT_THROUGH: &[(&str, Class)] = &[
 /// A visible matt material: below the cut-off its mirror image stays out of the picture.
 const BECOMES_MIRROR: &[(&str, Class)] = &[
     ("0.004", Reshade),
-    ("0.01", Retrace),
+    ("0.01", Regrow),
     ("0.009", Reshade),
-    ("0.5", Retrace),
+    ("0.5", Regrow),
     ("0", Reshade),
     ("[0, 0.004, 0]", Reshade),
     ("0.5", Reshade),
@@ -118,6 +118,8 @@ const BECOMES_MIRROR: &[(&str, Class)] = &[
 ];
 const EXPONENT: &[(&str, Class)] =
     &[("0", Refold), ("1", Refold), ("7.5", Refold), ("1e6", Refold), ("@", Refold)];
+/// Where colours fall: the kept trees say where surfaces are.
+const CELL: &[(&str, Class)] = &[("0.25", Refold), ("1", Refold), ("1.5", Refold), ("@", Refold)];
 const VECTOR: &[(&str, Class)] = &[("[0.1, -0.3, 0.8]", Retrace), ("@", Retrace)];
 const TURN: &[(&str, Class)] = &[("[0, 0, 15]", Retrace), ("@", Retrace)];
 const SCALE: &[(&str, Class)] =
@@ -147,7 +149,7 @@ pub(super) const ROWS: &[Row] = &[
             ("0", Reshade),
             ("1", Reshade),
             ("@", Reshade),
-            ("5", Retrace),
+            ("5", Regrow),
             ("@", Reshade),
             ("5", Reshade),
         ],
@@ -158,7 +160,7 @@ pub(super) const ROWS: &[Row] = &[
             ("0.5", Reshade),
             ("1", Reshade),
             ("@", Reshade),
-            ("0.0001", Retrace),
+            ("0.0001", Regrow),
             ("@", Reshade),
             ("0.0001", Reshade),
             ("0", Reshade), // the depth of 4 is the tighter limit here
@@ -168,12 +170,12 @@ pub(super) const ROWS: &[Row] = &[
     row("lights.*.color", COLOR),
     row("lights.*.intensity", COLOR),
     row("lights.*.on", &[("false", Reshade), ("true", Reshade)]),
-    row("lights.key.point", &[("[-4, -5, 7.5]", Retrace), ("@", Retrace)]),
-    row("lights.sun.direction", &[("[0.5, 0.4, -1]", Retrace), ("@", Retrace)]),
+    row("lights.key.point", &[("[-4, -5, 7.5]", Regrow), ("@", Regrow)]),
+    row("lights.sun.direction", &[("[0.5, 0.4, -1]", Regrow), ("@", Regrow)]),
     row("materials.*.color", COLOR),
     row("materials.*.texture.checker.a", COLOR),
     row("materials.*.texture.checker.b", COLOR),
-    row("materials.*.texture.checker.size", LENGTH),
+    row("materials.*.texture.checker.size", CELL),
     row("materials.*.kloc", COLOR),
     row("materials.*.ambient", COLOR),
     row("materials.*.diffuse", COLOR),
@@ -184,7 +186,9 @@ pub(super) const ROWS: &[Row] = &[
         &[("0", Reshade), ("0.5", Reshade), ("1", Reshade), ("@", Reshade)],
     ),
     row("materials.*.shininess", EXPONENT),
-    row("materials.*.ior", &[("1", Retrace), ("0.8", Retrace), ("2.4", Retrace), ("@", Retrace)]),
+    row("materials.glass.ior", &[("1", Regrow), ("0.8", Regrow), ("2.4", Regrow), ("@", Regrow)]),
+    // Nothing passes through the others, so nothing is bent.
+    row("materials.*.ior", &[("1", Nothing), ("0.8", Nothing), ("2.4", Nothing), ("@", Nothing)]),
     row(
         "materials.mirror.reflect",
         &[
@@ -193,14 +197,14 @@ pub(super) const ROWS: &[Row] = &[
             ("0.004", Reshade),
             ("[0.5, 0, 0.01]", Reshade),
             ("@", Reshade),
-            ("1", Retrace),
+            ("1", Regrow),
             ("10", Reshade), // as a weight not more than 1
             ("@", Reshade),
         ],
     ),
     row(
         "materials.brass.reflect",
-        &[("0", Reshade), ("0.1", Reshade), ("@", Reshade), ("0.9", Retrace), ("@", Reshade)],
+        &[("0", Reshade), ("0.1", Reshade), ("@", Reshade), ("0.9", Regrow), ("@", Reshade)],
     ),
     row(
         "materials.glass.reflect",
@@ -209,7 +213,7 @@ pub(super) const ROWS: &[Row] = &[
             ("0", Reshade),
             ("0.005", Reshade),
             ("@", Reshade),
-            ("0.5", Retrace),
+            ("0.5", Regrow),
             ("@", Reshade),
             ("0.5", Reshade),
         ],
@@ -223,7 +227,7 @@ pub(super) const ROWS: &[Row] = &[
             ("0", Reshade),
             ("[0, 0.8, 0]", Reshade),
             ("@", Reshade),
-            ("1", Retrace),
+            ("1", Regrow),
             ("0", Reshade),
             ("@", Reshade),
         ],
@@ -231,7 +235,7 @@ pub(super) const ROWS: &[Row] = &[
     // No solid lies below the floor or behind the screen as seen from a light.
     row(
         "materials.tiles.transmit",
-        &[("0.004", Reshade), ("0.5", Retrace), ("0", Reshade), ("0.5", Reshade), ("@", Reshade)],
+        &[("0.004", Reshade), ("0.5", Regrow), ("0", Reshade), ("0.5", Reshade), ("@", Reshade)],
     ),
     row("materials.*.transmit", LETS_LIGHT_THROUGH),
     row(
@@ -241,14 +245,17 @@ pub(super) const ROWS: &[Row] = &[
             ("0", Reshade),
             ("[0, 0, 0.6]", Reshade),
             ("@", Reshade),
-            ("2", Retrace),
+            ("2", Regrow),
             ("@", Reshade),
             ("2", Reshade),
         ],
     ),
     // Nothing passes through the others, whatever its colour would be.
     row("materials.*.filter", COLOR),
-    row("solids.*.material", &[("plain", Retrace), ("glass", Retrace), ("@", Retrace)]),
+    // Rays go on from the tiles and the lamp as they do from what is plain: not at all.
+    row("solids.floor.material", &[("plain", Refold), ("glass", Regrow), ("@", Regrow)]),
+    row("solids.screen.material", &[("plain", Refold), ("glass", Regrow), ("@", Regrow)]),
+    row("solids.*.material", &[("plain", Regrow), ("glass", Regrow), ("@", Regrow)]),
     row("solids.*.translate", VECTOR),
     row("solids.*.rotate_degrees", TURN),
     row("solids.*.scale", SCALE),

@@ -8,14 +8,13 @@
 use glam::DVec3;
 
 use rayforest::color::Rgb;
-use rayforest::forest::Forest;
 use rayforest::progress::Progress;
 use rayforest::scene::path::{self, Parameter};
 use rayforest::scene::{Material, Paint, Scene};
 use rayforest::session::{Class, Session};
 
 use super::picture::Picture;
-use super::preorder::{Limb, Lit, Tree, pixels};
+use super::preorder::{Limb, Lit, PixelTrees, Tree, pixels};
 use super::stage::{open, shipped, shipped_names};
 
 /// What a channel may differ: the trees keep cosines in f32, and the matrix product multiplies and
@@ -38,15 +37,15 @@ struct Evaluated {
 }
 
 /// Evaluates the trees under the scene.
-fn evaluate(forest: &Forest, scene: &Scene) -> Evaluated {
+fn evaluate(trees: &[PixelTrees], scene: &Scene) -> Evaluated {
     let mut evaluator = Evaluator { scene, dead: 0, margin: f64::INFINITY, missing: 0 };
-    let [width, height] = forest.layout.size;
+    let [width, height] = scene.picture.size;
     let mut picture =
         Picture { size: [width, height], pixels: vec![[f64::NAN; 3]; (width * height) as usize] };
-    for pixel in pixels(forest) {
+    for pixel in trees {
         let sum: DVec3 = pixel.samples.iter().map(|tree| evaluator.sample(tree.as_ref())).sum();
         let [x, y] = pixel.pixel;
-        let mean = sum / f64::from(forest.samples);
+        let mean = sum / f64::from(scene.trace.samples);
         picture.pixels[(y * width + x) as usize] = mean.to_array();
     }
     let Evaluator { scene: _, dead, margin, missing } = evaluator;
@@ -169,8 +168,8 @@ fn judge(ours: &Picture, truth: &Evaluated) -> Result<(), String> {
 }
 
 /// Holds a session against the second evaluation; gives the number of dead branches.
-fn check(session: &Session, name: &str) -> usize {
-    let truth = evaluate(session.forest(), session.scene());
+fn check(session: &Session, trees: &[PixelTrees], name: &str) -> usize {
+    let truth = evaluate(trees, session.scene());
     let ours = Picture::of_film(&session.film());
     if let Err(why) = judge(&ours, &truth) {
         let files = ours.leave(&truth.picture, &format!("evaluator-{name}"));
@@ -248,7 +247,12 @@ fn every_shipped_scene_is_what_the_formulas_say_as_traced_and_after_edits() {
     for name in shipped_names() {
         let mut session = open(shipped(&name));
         let originals = path::parameters(session.scene());
-        assert_eq!(check(&session, &name), 0, "{name}: a fresh trace stores no dead branch");
+        let trees = pixels(&session);
+        assert_eq!(
+            check(&session, &trees, &name),
+            0,
+            "{name}: a fresh trace stores no dead branch"
+        );
         for round in 0..6 {
             // A raised path factor may ask for rays: then lowered ones, which never do.
             let raised = edited(session.scene(), &originals, &mut dice, 1.1);
@@ -261,7 +265,7 @@ fn every_shipped_scene_is_what_the_formulas_say_as_traced_and_after_edits() {
             assert!(report.class <= Class::Refold, "{name}, round {round}: {:?}", report.reason);
             assert_eq!(report.rays.total(), 0, "{name}, round {round}");
             seen[report.class as usize] += 1;
-            dead += check(&session, &format!("{name}-{round}"));
+            dead += check(&session, &trees, &format!("{name}-{round}"));
         }
     }
     let [none, reshade, refold] = seen;
@@ -274,7 +278,8 @@ fn the_comparison_fails_for_another_scene_or_other_trees() {
     let session = open(shipped("whitted"));
     let ours = Picture::of_film(&session.film());
     let right = session.scene();
-    let under = |scene: &Scene| judge(&ours, &evaluate(session.forest(), scene));
+    let trees = pixels(&session);
+    let under = |scene: &Scene| judge(&ours, &evaluate(&trees, scene));
     assert_eq!(under(right), Ok(()));
     for (path, value, complaint) in [
         ("materials.tiles.diffuse", "0.70003", "differs"),

@@ -3,6 +3,8 @@
 
 use glam::DVec3;
 
+use std::sync::Arc;
+
 use rayforest::film::Frame;
 use rayforest::scene::{Camera, Lens, LightPlace, Paint, Placement, Scene, Shape};
 use rayforest::session::Session;
@@ -92,7 +94,8 @@ fn same_but_for_units(session: &Session, larger: &Session, by: f64) -> bool {
         blocks.iter().flat_map(|b| b.0.as_flattened()).map(|c| c.to_bits()).collect()
     };
     let mut forest = session.forest().clone();
-    for node in forest.tiles.iter_mut().flatten().flat_map(|trees| &mut trees.nodes) {
+    for node in forest.tiles.iter_mut().flatten().flat_map(|trees| &mut Arc::make_mut(trees).nodes)
+    {
         node.t *= by;
     }
     session.frame() == larger.frame() && film(session) == film(larger) && forest == *larger.forest()

@@ -33,7 +33,7 @@ fn light(session: &Session) -> [f64; 3] {
 
 /// The tree of the one ray.
 fn tree(session: &Session) -> Tree {
-    let pixel = pixels(session.forest()).into_iter().next();
+    let pixel = pixels(session).into_iter().next();
     pixel.and_then(|p| p.samples.into_iter().next()).flatten().expect("the ray meets something")
 }
 

@@ -1,8 +1,9 @@
-//! The kept trees read once more, by a reader of the tests' own, into plain recursive values.
+//! The trees read once more, by a reader of the tests' own, into plain recursive values.
 
 use rayforest::film::layout::{LANES, Place, TILE_BLOCKS};
-use rayforest::forest::Forest;
 use rayforest::forest::tree::{BLOCKED, Branch, TileTrees};
+use rayforest::progress::Progress;
+use rayforest::session::Session;
 
 /// A node with what grows from it.
 pub(super) struct Tree {
@@ -41,16 +42,21 @@ pub(super) struct PixelTrees {
     pub(super) samples: Vec<Option<Tree>>,
 }
 
-/// The trees of every pixel of a forest that released none.
-pub(super) fn pixels(forest: &Forest) -> Vec<PixelTrees> {
+/// The trees of every pixel of a session.
+pub(super) fn pixels(session: &Session) -> Vec<PixelTrees> {
+    let (layout, samples) = (session.transport().layout, session.transport().samples);
+    let solids = &session.scene().solids;
+    let materials: Vec<usize> = solids.iter().map(|solid| solid.material).collect();
     let mut list = Vec::new();
-    for (tile, trees) in forest.tiles.iter().enumerate() {
-        let trees = trees.as_ref().expect("all trees are kept");
-        let mut cursor = Cursor { trees, sample: 0, node: 0, light: 0, crossing: 0 };
+    for tile in 0..layout.tiles() {
+        let trees = &session.trees(tile, &Progress::default()).expect("trees within the budget");
+        let start =
+            Cursor { trees, materials: &materials, sample: 0, node: 0, light: 0, crossing: 0 };
+        let mut cursor = start;
         for block in 0..TILE_BLOCKS {
             for lane in 0..LANES {
-                if let Some(pixel) = forest.layout.pixel(Place { tile, block, lane }) {
-                    let samples = (0..forest.samples).map(|_| cursor.sample()).collect();
+                if let Some(pixel) = layout.pixel(Place { tile, block, lane }) {
+                    let samples = (0..samples).map(|_| cursor.sample()).collect();
                     list.push(PixelTrees { pixel, samples });
                 }
             }
@@ -62,6 +68,8 @@ pub(super) fn pixels(forest: &Forest) -> Vec<PixelTrees> {
 
 struct Cursor<'a> {
     trees: &'a TileTrees,
+    /// Per solid.
+    materials: &'a [usize],
     sample: usize,
     node: usize,
     light: usize,
@@ -98,13 +106,16 @@ impl Cursor<'_> {
         self.light += 1;
         let blocked = hit.crossed == BLOCKED;
         let count = if blocked { 1 } else { usize::from(hit.crossed) };
-        let materials = &self.trees.crossings[self.crossing..self.crossing + count];
+        let solids = &self.trees.crossings[self.crossing..self.crossing + count];
         self.crossing += count;
+        let mut materials: Vec<usize> =
+            solids.iter().map(|&solid| self.materials[solid as usize]).collect();
+        materials.sort_unstable();
         Lit {
             light: hit.light.into(),
             n_dot_l: hit.n_dot_l.into(),
             one_minus_r_dot_v: hit.one_minus_r_dot_v.into(),
-            crossed: (!blocked).then(|| materials.iter().map(|&m| m.into()).collect()),
+            crossed: (!blocked).then_some(materials),
         }
     }
 

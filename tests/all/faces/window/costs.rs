@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayforest::progress::Progress;
 use rayforest::scene::{Scene, path};
-use rayforest::session::cost::{Cost, cost};
+use rayforest::session::cost::{Cost, Pixels, cost};
 use rayforest::session::{Class, Session};
 
 use super::*;
@@ -39,13 +39,22 @@ block = { box = { min = [1, 0, -1], max = [2, 1, 0] }, material = "glass" }
 "#;
 
 /// The badge of a cost in the window's own words, with the value that it names.
-fn words(cost: Cost) -> (&'static str, Option<f64>) {
+fn words(cost: Cost) -> (String, Option<f64>) {
+    let percent = |pixels: Pixels| {
+        let percent = (pixels.count as f64 * 100.0 / pixels.of as f64).round();
+        assert!(
+            pixels.count == 0 || percent >= 1.0 && (percent < 100.0 || pixels.count == pixels.of)
+        );
+        format!("{percent} %")
+    };
     match cost {
-        Cost::Instant => ("instant", None),
-        Cost::InstantUpTo(x) => ("instant ≤ ", Some(x)),
-        Cost::InstantDownTo(x) => ("instant ≥ ", Some(x)),
-        Cost::Refold => ("refold", None),
-        Cost::TraceAll => ("traces all", None),
+        Cost::Instant => ("instant".into(), None),
+        Cost::InstantUpTo(x, _) => ("instant ≤ ".into(), Some(x)),
+        Cost::InstantDownTo(x, _) => ("instant ≥ ".into(), Some(x)),
+        Cost::Refold => ("refold".into(), None),
+        Cost::Reread(pixels) => (format!("rereads {}", percent(pixels)), None),
+        Cost::Regrow(pixels) => (format!("traces {}", percent(pixels)), None),
+        Cost::TraceAll => ("traces all".into(), None),
     }
 }
 
@@ -63,24 +72,25 @@ fn fault(session: &mut Session, path: &str, text: &str) -> Option<String> {
     let Some(limit) = limit else {
         let altered = path::altered(&scene, path).expect("a parameter");
         let class = session.class_of(&altered);
-        let told = match word {
+        let told = match word.as_str() {
             "instant" => class <= Class::Reshade,
-            "refold" => class == Class::Refold,
-            _ => class == Class::Retrace,
+            "traces all" => class == Class::Retrace,
+            traces if traces.starts_with("traces") => class == Class::Regrow,
+            _ => class == Class::Refold,
         };
         return (!told || text != word).then(|| format!("{path}: `{text}`, but {class}"));
     };
-    let Some(told) = text.strip_prefix(word).and_then(|rest| rest.parse::<f64>().ok()) else {
+    let Some(told) = text.strip_prefix(&word).and_then(|rest| rest.parse::<f64>().ok()) else {
         return Some(format!("{path}: `{text}`, but {word}{limit}"));
     };
     // Beyond the limit by more than the badge rounds.
-    let beyond = match word {
+    let beyond = match word.as_str() {
         _ if is_whole => limit + 1.0,
         "instant ≤ " => limit * 1.01 + 1e-6,
         _ => limit * 0.99,
     };
     let (inside, outside) = (class(session, told), class(session, beyond));
-    let held = inside.is_some_and(|c| c <= Class::Reshade) && outside == Some(Class::Retrace);
+    let held = inside.is_some_and(|c| c <= Class::Reshade) && outside == Some(Class::Regrow);
     (!held).then(|| format!("{path}: `{text}`, but {inside:?} there, {outside:?} beyond"))
 }
 

@@ -58,7 +58,7 @@ fn look(scene: Scene) -> Seen {
     let session = open(scene);
     let film = session.film();
     let mut seen = Seen { met: 0, ended: 0, worst: 0.0 };
-    for pixel in pixels(session.forest()) {
+    for pixel in pixels(&session) {
         let met = pixel.samples.iter().flatten();
         let ended = met.clone().filter(|tree| tree.has_cut(Branch::Depth)).count();
         seen.met += met.count();
@@ -115,7 +115,7 @@ fn a_ball_that_splits_rays_lacks_what_the_depth_limit_cuts() {
         scene.trace.samples = 1;
         let session = open(scene);
         let truth = 1.0 - 0.75 * 0.25f64.powi(depth as i32 - 1);
-        for pixel in pixels(session.forest()).iter().filter(|p| p.samples[0].is_some()) {
+        for pixel in pixels(&session).iter().filter(|p| p.samples[0].is_some()) {
             for channel in session.film().pixel(pixel.pixel).0 {
                 let off = (f64::from(channel) - truth).abs();
                 assert!(off <= EXACT, "depth {depth}, pixel {:?}: off by {off:e}", pixel.pixel);

@@ -337,7 +337,7 @@ fn a_ball_never_reflects_totally_what_entered_it() {
     let inside = |solids: Vec<Solid>| {
         let session = open(Scene { solids, ..scene.clone() });
         let (mut nodes, mut total) = (0, 0);
-        for tree in pixels(session.forest()).iter().flat_map(|p| p.samples.iter().flatten()) {
+        for tree in pixels(&session).iter().flat_map(|p| p.samples.iter().flatten()) {
             tree.each(&mut |node| {
                 nodes += 1;
                 total += usize::from(node.total);

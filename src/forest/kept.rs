@@ -1,0 +1,247 @@
+//! Ray trees as they are kept: what rays met, from which everything else is computed again.
+
+use super::tree::{BLOCKED, Branch, Ends, LightHit, Node, TileTrees};
+use crate::film::layout::TILE_BLOCKS;
+
+/// Where a ray of the seen path met a surface: 16 bytes. The ray itself follows from the pixel, the
+/// sample and the nodes above, and so do normals, media and cosines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KeptNode {
+    /// Distance along the ray, world units.
+    pub t: f64,
+    /// The primitive of the geometry that was met.
+    pub primitive: u32,
+    /// Number of [`KeptLight`]s that belong to this node.
+    pub lights: u16,
+    /// What became of its branches.
+    pub ends: Ends,
+}
+
+/// What the shadow ray towards a light met: 4 bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct KeptLight {
+    /// The light's key: a light at another place has another key.
+    pub key: u16,
+    /// How many entries of `crossings` belong to it, or [`BLOCKED`]: one, the witness.
+    pub crossed: u16,
+}
+
+/// The kept trees of one tile, in the order of its blocks, their pixels and samples.
+///
+/// # Invariants
+/// As those of [`TileTrees`], of which they are a part. Written by `session`, read by `grow`, which
+/// takes from them the answers to the rays that it would otherwise cast.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct KeptTrees {
+    /// Where each of the tile's 64 blocks begins, and the end.
+    pub blocks: Vec<KeptStart>,
+    /// Per sample a bit, whether its ray met the scene: sample 0 of a block is bit 0 of its first
+    /// word, sample 64 bit 0 of the next.
+    pub hits: Vec<u64>,
+    /// Nodes of all samples, in preorder.
+    pub nodes: Vec<KeptNode>,
+    /// Light records of all nodes.
+    pub lights: Vec<KeptLight>,
+    /// Solids that shadow rays crossed, or witnesses that stopped them.
+    pub crossings: Vec<u32>,
+}
+
+/// A position in all arrays of a [`KeptTrees`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct KeptStart {
+    /// Index into `hits`.
+    pub word: u32,
+    /// Index into `nodes`.
+    pub node: u32,
+    /// Index into `lights`.
+    pub light: u32,
+    /// Index into `crossings`.
+    pub crossing: u32,
+}
+
+impl KeptTrees {
+    /// Empties it, to be filled block by block.
+    pub fn clear(&mut self) {
+        let KeptTrees { blocks, hits, nodes, lights, crossings } = self;
+        blocks.clear();
+        blocks.push(KeptStart::default());
+        hits.clear();
+        nodes.clear();
+        lights.clear();
+        crossings.clear();
+    }
+
+    /// Whether every block is there.
+    pub fn is_whole(&self) -> bool {
+        self.blocks.len() == TILE_BLOCKS + 1
+    }
+
+    /// Allocated bytes of all arrays.
+    pub fn bytes(&self) -> usize {
+        let KeptTrees { blocks, hits, nodes, lights, crossings } = self;
+        blocks.capacity() * size_of::<KeptStart>()
+            + hits.capacity() * 8
+            + nodes.capacity() * size_of::<KeptNode>()
+            + lights.capacity() * size_of::<KeptLight>()
+            + crossings.capacity() * 4
+    }
+
+    /// Bytes of what is stored, without room for more.
+    pub fn used_bytes(&self) -> usize {
+        let KeptTrees { blocks, hits, nodes, lights, crossings } = self;
+        size_of_val(&**blocks)
+            + size_of_val(&**hits)
+            + size_of_val(&**nodes)
+            + size_of_val(&**lights)
+            + size_of_val(&**crossings)
+    }
+
+    /// Appends a block just grown, the first one in `grown`. `keys` has one key per light.
+    pub fn push_grown(&mut self, grown: &TileTrees, keys: &[u16]) {
+        let TileTrees { blocks: _, hits, nodes, lights, crossings } = grown;
+        self.hits.extend(hits.chunks(64).map(|bits| {
+            bits.iter().enumerate().fold(0u64, |word, (i, &hit)| word | u64::from(hit) << i)
+        }));
+        self.nodes.extend(nodes.iter().map(|&node| {
+            let Node { t, primitive, material: _, lights, slot: _, ends } = node;
+            KeptNode { t, primitive, lights, ends }
+        }));
+        self.lights.extend(lights.iter().map(|hit| {
+            let LightHit { light, crossed, n_dot_l: _, one_minus_r_dot_v: _ } = *hit;
+            KeptLight { key: keys[light as usize], crossed }
+        }));
+        self.crossings.extend_from_slice(crossings);
+        self.end_block();
+    }
+
+    /// Appends a block of other trees.
+    pub fn push_block(&mut self, other: &KeptTrees, block: usize) {
+        let [from, to] = [other.blocks[block], other.blocks[block + 1]];
+        let range = |a: u32, b: u32| a as usize..b as usize;
+        self.hits.extend_from_slice(&other.hits[range(from.word, to.word)]);
+        self.nodes.extend_from_slice(&other.nodes[range(from.node, to.node)]);
+        self.lights.extend_from_slice(&other.lights[range(from.light, to.light)]);
+        self.crossings.extend_from_slice(&other.crossings[range(from.crossing, to.crossing)]);
+        self.end_block();
+    }
+
+    fn end_block(&mut self) {
+        self.blocks.push(KeptStart {
+            word: self.hits.len() as u32,
+            node: self.nodes.len() as u32,
+            light: self.lights.len() as u32,
+            crossing: self.crossings.len() as u32,
+        });
+    }
+
+    /// The same trees, moved to smaller memory if they leave more than an eighth of theirs free.
+    pub fn trimmed(mut self) -> KeptTrees {
+        let KeptTrees { blocks, hits, nodes, lights, crossings } = &mut self;
+        trim(blocks);
+        trim(hits);
+        trim(nodes);
+        trim(lights);
+        trim(crossings);
+        self
+    }
+
+    /// Reads a block's samples in order.
+    pub fn recall(&self, block: usize) -> Recall<'_> {
+        let at = self.blocks[block];
+        Recall { trees: self, at, bit: 0 }
+    }
+}
+
+fn trim<T>(array: &mut Vec<T>) {
+    if array.capacity() > array.len() + array.len() / 8 {
+        array.shrink_to_fit();
+    }
+}
+
+/// Reads kept trees in order.
+pub struct Recall<'a> {
+    trees: &'a KeptTrees,
+    at: KeptStart,
+    bit: u32,
+}
+
+/// A kept node with what its shadow rays met.
+#[derive(Clone, Copy)]
+pub struct Recalled<'a> {
+    /// The node.
+    pub node: &'a KeptNode,
+    lights: &'a [KeptLight],
+    crossings: &'a [u32],
+}
+
+impl<'a> Recall<'a> {
+    /// Whether the next sample's ray met the scene; its nodes follow.
+    #[inline(always)]
+    pub fn sample(&mut self) -> bool {
+        let word = self.trees.hits[self.at.word as usize];
+        let hit = word >> self.bit & 1 != 0;
+        self.bit += 1;
+        if self.bit == 64 {
+            (self.bit, self.at.word) = (0, self.at.word + 1);
+        }
+        hit
+    }
+
+    /// The next node.
+    #[inline(always)]
+    pub fn node(&mut self) -> Recalled<'a> {
+        let trees = self.trees;
+        let node = &trees.nodes[self.at.node as usize];
+        let from = self.at.light as usize;
+        let lights = &trees.lights[from..from + node.lights as usize];
+        let crossings = &trees.crossings[self.at.crossing as usize..];
+        self.at.node += 1;
+        self.at.light += u32::from(node.lights);
+        self.at.crossing += lights.iter().map(|light| light.entries() as u32).sum::<u32>();
+        Recalled { node, lights, crossings }
+    }
+
+    /// Passes over a node and all below it.
+    pub fn skip(&mut self) {
+        let mut open = 1;
+        while open > 0 {
+            let ends = self.node().node.ends;
+            let below = [ends.reflected(), ends.transmitted()];
+            open += below.iter().filter(|&&b| b == Branch::Grown).count();
+            open -= 1;
+        }
+    }
+}
+
+impl KeptLight {
+    /// How many entries of `crossings` belong to it.
+    #[inline(always)]
+    fn entries(self) -> usize {
+        if self.crossed == BLOCKED { 1 } else { self.crossed as usize }
+    }
+}
+
+/// What a shadow ray met.
+pub enum Met<'a> {
+    /// An opaque solid.
+    Blocker(u32),
+    /// These solids, each as often as it was crossed.
+    Crossed(&'a [u32]),
+}
+
+impl<'a> Recalled<'a> {
+    /// What the shadow ray to the light with this key met; `None` if none was cast. Lights are asked
+    /// for in the order in which they are kept, others in between.
+    #[inline(always)]
+    pub fn light(&mut self, key: u16) -> Option<Met<'a>> {
+        let at = self.lights.iter().position(|light| light.key == key)?;
+        let before: usize = self.lights[..at].iter().map(|light| light.entries()).sum();
+        let light = self.lights[at];
+        let (entries, rest) = self.crossings[before..].split_at(light.entries());
+        (self.lights, self.crossings) = (&self.lights[at + 1..], rest);
+        Some(match light.crossed {
+            BLOCKED => Met::Blocker(entries[0]),
+            _ => Met::Crossed(entries),
+        })
+    }
+}

@@ -1,0 +1,229 @@
+//! Which pixels an edit concerns: found in the matrix and the frontier, without a ray.
+
+use rayon::prelude::*;
+
+use super::Session;
+use crate::film::layout::{LANES, TILE_BLOCKS};
+use crate::fold::merge::Blocks;
+use crate::fold::transport::TransportTile;
+use crate::fold::trie::Trie;
+use crate::scene::Scene;
+use crate::scene::change::Change;
+use crate::scene::factor::{FactorValues, Kind};
+
+/// The least work that makes the picture exact where shading alone does not.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// What asks for it.
+    pub reason: String,
+    /// The pixels whose trees are read again, in the order of the tiles. No tile is empty.
+    pub tiles: Vec<PlanTile>,
+    /// Whether rays may have to be cast; otherwise what is kept answers all of them.
+    pub casts: bool,
+}
+
+/// Pixels of a tile.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PlanTile {
+    /// Index of the tile.
+    pub tile: usize,
+    /// Per block bit i for lane i.
+    pub lanes: Box<[u16; TILE_BLOCKS]>,
+}
+
+impl Plan {
+    /// How many pixels there are.
+    pub fn pixels(&self) -> u64 {
+        self.tiles.iter().map(PlanTile::pixels).sum()
+    }
+}
+
+impl PlanTile {
+    /// How many pixels there are.
+    pub fn pixels(&self) -> u64 {
+        self.lanes.iter().map(|lanes| u64::from(lanes.count_ones())).sum()
+    }
+
+    /// The blocks that have any.
+    pub fn blocks(&self) -> Blocks {
+        let marked = self.lanes.iter().enumerate().filter(|(_, lanes)| **lanes != 0);
+        marked.fold(0, |blocks, (block, _)| blocks | 1 << block)
+    }
+}
+
+/// What is looked for, by the ids of the picture's terms.
+struct Concern {
+    /// Terms in front of which a coefficient stands.
+    terms: Vec<bool>,
+    /// The same, in tiles without highlight lists.
+    unlisted: Vec<bool>,
+    /// Terms at which branches or shadow rays end.
+    frontier: Vec<bool>,
+}
+
+impl Session {
+    /// What is to be grown again to make `scene` the session's; `None` if shading is enough.
+    ///
+    /// # Panics
+    /// If the change asks for everything.
+    pub(super) fn plan(&mut self, scene: &Scene, change: &Change) -> Option<Plan> {
+        assert!(!change.everything, "only a trace does everything");
+        let mut reason = change.moves_rays.map(|what| format!("{what} moves rays"));
+        let mut casts = change.casts;
+        let trie = &self.transport.trie;
+        let count = trie.nodes().len();
+        let (mut nodes, stale) = (change.nodes.clone(), self.stale(scene, change));
+        nodes.extend(self.gone(change));
+        if !stale.is_empty() {
+            reason.get_or_insert_with(|| "ior moves rays".into());
+            casts = true;
+            nodes.extend(stale);
+        }
+        let mut concern = Concern {
+            terms: vec![false; if nodes.is_empty() && !change.shadows { 0 } else { count }],
+            unlisted: Vec::new(),
+            frontier: vec![false; count],
+        };
+        if !concern.terms.is_empty() {
+            mark_nodes(trie, &nodes, change.shadows, &mut concern);
+        }
+        let lists_missing = self.transport.tiles.iter().any(|tile| tile.highlights.is_none());
+        if !change.refold.is_empty() && lists_missing {
+            reason.get_or_insert_with(|| "highlight lists were released for memory".into());
+            concern.unlisted = self.terms_of(&change.refold, change);
+        }
+        if change.terms || change.moves_rays.is_some() {
+            let factors = self.factors_after(scene, change);
+            let mut first = None;
+            for id in self.terms.uncovered(&self.program, &factors) {
+                concern.frontier[id as usize] = true;
+                first.get_or_insert(id);
+            }
+            if let Some(id) = first {
+                casts = true;
+                reason.get_or_insert_with(|| self.comes_alive(id, scene));
+            }
+        }
+        let reason = reason?;
+        let tiles = self.transport.tiles.par_iter().enumerate();
+        let find = |(tile, transport)| concern.of_tile(tile, transport);
+        let tiles: Vec<PlanTile> = self.pool.install(|| tiles.filter_map(find).collect());
+        casts |= tiles.iter().any(|plan| self.forest.tiles[plan.tile].is_none());
+        Some(Plan { reason, tiles, casts })
+    }
+
+    /// Old materials whose index of refraction shows in the new scene, and with which the trees were
+    /// not grown: while nothing passed through them it did not matter.
+    fn stale(&self, scene: &Scene, change: &Change) -> Vec<u16> {
+        let pairs = scene.materials.iter().zip(&change.materials);
+        let stale = pairs.filter_map(|(new, &before)| {
+            let before = before?;
+            (new.ior_matters() && new.ior != self.iors[before as usize]).then_some(before)
+        });
+        stale.collect()
+    }
+
+    /// Old materials that the new scene lacks, and of which the matrix speaks.
+    fn gone(&self, change: &Change) -> Vec<u16> {
+        if change.keeps_materials() && self.iors.len() == change.materials.len() {
+            return Vec::new();
+        }
+        let mut gone: Vec<u16> = (0..).take(self.iors.len()).collect();
+        gone.retain(|material| !change.materials.contains(&Some(*material)));
+        let nodes = self.transport.trie.nodes();
+        let speaks_of = |material: &u16| {
+            let of = |index| index == usize::from(*material);
+            nodes.iter().skip(1).any(|n| n.factor.is_of_material() && of(n.factor.index()))
+        };
+        gone.retain(speaks_of);
+        gone
+    }
+
+    /// The value of every factor in the new scene, under the names of the matrix of today.
+    fn factors_after(&self, scene: &Scene, change: &Change) -> FactorValues {
+        if change.keeps_materials() {
+            return FactorValues::new(scene);
+        }
+        let mut renamed = Scene { materials: self.scene.materials.clone(), ..scene.clone() };
+        for (material, before) in scene.materials.iter().zip(&change.materials) {
+            if let Some(before) = before {
+                renamed.materials[*before as usize] = material.clone();
+            }
+        }
+        FactorValues::new(&renamed)
+    }
+
+    /// Marks the terms that have coefficients of some of the new scene's materials' surfaces.
+    fn terms_of(&self, materials: &[u16], change: &Change) -> Vec<bool> {
+        let old: Vec<usize> = materials
+            .iter()
+            .filter_map(|&m| change.materials[m as usize].map(usize::from))
+            .collect();
+        let is_of = |kind, index| kind == Kind::Ambient && old.contains(&index);
+        let nodes = self.transport.trie.nodes().iter();
+        nodes.map(|node| is_of(node.factor.kind(), node.factor.index())).collect()
+    }
+
+    fn comes_alive(&self, id: u32, scene: &Scene) -> String {
+        let factors = self.transport.trie.factors(id);
+        let names: Vec<_> = factors.iter().map(|f| f.describe(scene)).collect();
+        format!("the branch {} comes alive", names.join(" · "))
+    }
+}
+
+/// Marks the terms of the old `materials`' surfaces, of shadow rays through them or stopped by them,
+/// and, if `all` says so, those of every surface.
+fn mark_nodes(trie: &Trie, materials: &[u16], all: bool, concern: &mut Concern) {
+    for (id, node) in trie.nodes().iter().enumerate().skip(1) {
+        let (kind, index) = (node.factor.kind(), node.factor.index());
+        let named = || materials.contains(&(index as u16));
+        let surface = kind == Kind::Ambient && (all || named());
+        let shadow = kind == Kind::Shadow && named();
+        concern.terms[id] = surface || shadow || concern.terms[node.parent as usize];
+        concern.frontier[id] |= shadow;
+    }
+}
+
+impl Concern {
+    fn of_tile(&self, tile: usize, transport: &TransportTile) -> Option<PlanTile> {
+        let mut lanes = Box::new([0u16; TILE_BLOCKS]);
+        if !self.terms.is_empty() {
+            find_terms(transport, &self.terms, &mut lanes);
+        }
+        if !self.unlisted.is_empty() && transport.highlights.is_none() {
+            find_terms(transport, &self.unlisted, &mut lanes);
+        }
+        let frontier = &transport.frontier;
+        let known = frontier.terms.iter().any(|&id| self.frontier[id as usize]);
+        if known {
+            for (block, lanes) in lanes.iter_mut().enumerate() {
+                for mark in frontier.block(block) {
+                    if self.frontier[frontier.terms[mark.entry as usize] as usize] {
+                        *lanes |= mark.mask;
+                    }
+                }
+            }
+        }
+        lanes.iter().any(|&lanes| lanes != 0).then_some(PlanTile { tile, lanes })
+    }
+}
+
+/// Adds the lanes in which coefficients of the marked terms stand.
+fn find_terms(transport: &TransportTile, marked: &[bool], lanes: &mut [u16; TILE_BLOCKS]) {
+    let local: Vec<bool> = transport.terms.iter().map(|&id| marked[id as usize]).collect();
+    if !local.contains(&true) {
+        return;
+    }
+    for (block, lanes) in lanes.iter_mut().enumerate() {
+        let rows = transport.block(block);
+        for (&entry, plane) in rows.entries.iter().zip(rows.planes) {
+            if local[entry as usize] && *lanes != u16::MAX {
+                let set = |mask, i| mask | u16::from(plane.0[i] != 0.0) << i;
+                *lanes |= (0..LANES).fold(0, set);
+            }
+        }
+        for single in rows.singles.iter().filter(|single| local[single.entry()]) {
+            *lanes |= 1 << single.lane();
+        }
+    }
+}

@@ -1,0 +1,285 @@
+//! Grows some pixels' trees again, from what is kept of them, and folds them into the matrix.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
+use rayon::ThreadPool;
+use rayon::prelude::*;
+
+use super::Session;
+use super::plan::{Plan, PlanTile};
+use super::trace::{LEAST_BLOCK_LIMIT, TraceError, claim};
+use crate::film::layout::{Layout, TILE_BLOCKS};
+use crate::fold::merge::Blocks;
+use crate::fold::transport::TransportTile;
+use crate::fold::trie::{Marks, Trie, TrieNode};
+use crate::fold::{Folder, Names};
+use crate::forest::Forest;
+use crate::forest::grow::{Grower, RayCounts, Worker};
+use crate::forest::kept::KeptTrees;
+use crate::forest::tree::TileTrees;
+use crate::geometry::Geometry;
+use crate::progress::Progress;
+use crate::scene::Scene;
+use crate::scene::change::Change;
+use crate::shade::terms::TermProgram;
+
+/// A plan with all that it needs: it can be carried out beside the session that it is of.
+pub struct Regrow {
+    /// The scene that is wanted.
+    pub(super) scene: Arc<Scene>,
+    pub(super) plan: Plan,
+    geometry: Arc<Geometry>,
+    /// Shared with the session.
+    forest: Forest,
+    keys: Vec<u16>,
+    names: Names,
+    /// Per solid, of the kept trees.
+    iors_before: Vec<f64>,
+    /// Per material of the new scene, of the trees when all is done.
+    iors_after: Vec<f64>,
+    budget: usize,
+    /// Bytes kept, those of the patches included.
+    kept: AtomicUsize,
+}
+
+/// Blocks of a tile grown and folded again.
+pub struct Patch {
+    tile: usize,
+    blocks: Blocks,
+    /// The terms of `part`.
+    nodes: Vec<TrieNode>,
+    part: TransportTile,
+    /// Of the whole tile, or `None` if trees of its other blocks are not kept.
+    trees: Option<Arc<KeptTrees>>,
+    /// Rays cast for it.
+    pub(super) rays: RayCounts,
+}
+
+impl Session {
+    /// Prepares to carry out a plan for `scene`.
+    pub(super) fn regrow(&mut self, scene: Arc<Scene>, change: &Change, plan: Plan) -> Regrow {
+        let geometry = match change.surfaces {
+            true => Arc::new(self.geometry.with_surfaces_of(&scene)),
+            false => self.geometry.clone(),
+        };
+        let keys = self.keys_after(change);
+        let lights = match change.shadows {
+            true => (0..).take(scene.lights.len()).collect(),
+            false => self.light_places_after(change),
+        };
+        Regrow {
+            names: Names { materials: geometry.materials().to_vec(), lights },
+            keys,
+            geometry,
+            forest: self.forest.clone(),
+            iors_before: self.geometry.of_solids(&self.iors),
+            iors_after: self.iors_after(&scene, change),
+            kept: AtomicUsize::new(self.kept_bytes() as usize),
+            budget: usize::try_from(self.options.memory).unwrap_or(usize::MAX),
+            scene,
+            plan,
+        }
+    }
+
+    /// Keys of the new scene's lights: a light that is new or elsewhere has a new one.
+    fn keys_after(&mut self, change: &Change) -> Vec<u16> {
+        let old = &self.keys;
+        let mut free = (0..=u16::MAX).filter(|key| !old.contains(key));
+        let key = |before: &Option<u16>| match before {
+            Some(before) => old[*before as usize],
+            None => free.next().expect("fewer lights than keys"),
+        };
+        change.lights.iter().map(key).collect()
+    }
+
+    /// Per material of the new scene the index of refraction with which its nodes stand in the trees
+    /// when a plan was carried out. Where it does not matter, some may stand there with another one
+    /// than others: not a number, which differs from every number.
+    fn iors_after(&self, scene: &Scene, change: &Change) -> Vec<f64> {
+        let pairs = scene.materials.iter().zip(&change.materials);
+        let after = pairs.map(|(new, before)| match before {
+            Some(before) if !new.ior_matters() && self.iors[*before as usize] != new.ior => {
+                f64::NAN
+            }
+            _ => new.ior,
+        });
+        after.collect()
+    }
+
+    /// Puts the patches of a plan that was carried out in place: from now on its scene is the
+    /// session's. On an error nothing has changed, but for trees that were released.
+    pub(super) fn commit(&mut self, regrow: Regrow, patches: Vec<Patch>) -> Result<(), TraceError> {
+        let replaced = |p: &Patch| self.transport.tiles[p.tile].bytes_of_blocks(p.blocks);
+        let matrix = self.transport.bytes() as u64
+            + patches.iter().map(|p| p.part.bytes_of_blocks(u64::MAX) as u64).sum::<u64>()
+            - patches.iter().map(|p| replaced(p) as u64).sum::<u64>();
+        if matrix > self.options.memory {
+            return Err(TraceError::Memory { budget: regrow.budget as u64 });
+        }
+        let change = Change::between(&self.scene, &regrow.scene);
+        let Regrow { scene, geometry, keys, names, iors_after, .. } = regrow;
+        self.rename_materials(&change);
+        let mut marks = vec![false; self.transport.tiles.len()];
+        self.refold(&scene, &change.refold, &mut marks);
+        for patch in &patches {
+            self.forest.tiles[patch.tile] = patch.trees.clone();
+        }
+        self.merge(patches);
+        (self.scene, self.geometry) = (scene, geometry);
+        (self.keys, self.names, self.iors) = (keys, names, iors_after);
+        self.program = TermProgram::new(&self.transport.trie);
+        self.release_to_budget();
+        self.redraw();
+        Ok(())
+    }
+
+    /// Releases the latest tiles' trees, then their highlight lists, until the rest fits into the
+    /// budget.
+    fn release_to_budget(&mut self) {
+        let budget = self.options.memory;
+        let mut bytes = self.kept_bytes();
+        for trees in self.forest.tiles.iter_mut().rev() {
+            if bytes <= budget {
+                return;
+            }
+            bytes -= trees.take().map_or(0, |trees| trees.bytes() as u64);
+        }
+        for tile in self.transport.tiles.iter_mut().rev() {
+            if bytes <= budget {
+                return;
+            }
+            bytes -= tile.highlights.take().map_or(0, |lists| lists.bytes() as u64);
+        }
+    }
+
+    /// Merges patches into the matrix.
+    fn merge(&mut self, patches: Vec<Patch>) {
+        let mut trie = self.transport.trie.growing();
+        let globals: Vec<Vec<u32>> = patches.iter().map(|patch| patch.intern(&mut trie)).collect();
+        let ranks = trie.canonical_ranks();
+        let trie = trie.renumbered(&ranks);
+        let mut parts: Vec<Option<(Patch, Vec<u32>)>> = Vec::new();
+        parts.resize_with(self.transport.tiles.len(), || None);
+        for (patch, global) in patches.into_iter().zip(globals) {
+            let tile = patch.tile;
+            parts[tile] = Some((patch, global));
+        }
+        let tiles = self.transport.tiles.par_iter_mut().zip(parts);
+        self.pool.install(|| {
+            tiles.for_each(|(tile, part)| {
+                tile.renumber(|id| ranks[id as usize]);
+                if let Some((Patch { blocks, mut part, .. }, global)) = part {
+                    part.renumber(|id| ranks[global[id as usize] as usize]);
+                    *tile = tile.with_blocks(&part, blocks);
+                }
+            });
+        });
+        let mut used = vec![Marks::default(); trie.nodes().len()];
+        for tile in &self.transport.tiles {
+            tile.terms.iter().for_each(|&id| used[id as usize].add(Marks::TERM));
+            for &id in &tile.frontier.terms {
+                used[id as usize].add(trie.nodes()[id as usize].end_mark());
+            }
+        }
+        let (trie, ids) = trie.only(&used);
+        let tiles = &mut self.transport.tiles;
+        self.pool.install(|| {
+            tiles.par_iter_mut().for_each(|tile| tile.renumber(|id| ids[id as usize]));
+        });
+        self.transport.trie = trie;
+    }
+}
+
+impl Patch {
+    /// The ids of its terms in `trie`, to which they are added.
+    fn intern(&self, trie: &mut Trie) -> Vec<u32> {
+        let mut global = vec![0u32; self.nodes.len()];
+        for (id, node) in self.nodes.iter().enumerate().skip(1) {
+            global[id] = trie.intern(global[node.parent as usize], node.factor);
+        }
+        global
+    }
+}
+
+impl Regrow {
+    /// Carries the plan out tile by tile, in its order, on all threads of the pool; `done` is given
+    /// what is ready. Only rays that kept trees do not answer are cast.
+    pub(super) fn run(
+        &self,
+        pool: &ThreadPool,
+        progress: &Progress,
+        done: &(dyn Fn(Patch) + Sync),
+    ) -> Result<(), TraceError> {
+        progress.begin(self.plan.tiles.len() as u64);
+        let grower =
+            Grower::recalling(&self.scene, &self.geometry, self.keys.clone(), &self.iors_before);
+        let next = AtomicUsize::new(0);
+        let results = pool.broadcast(|_| -> Result<(), TraceError> {
+            let mut scratch = Scratch {
+                worker: grower.worker(),
+                folder: Folder::default(),
+                grown: TileTrees::default(),
+            };
+            while let Some(at) = claim(&next, self.plan.tiles.len()) {
+                done(self.tile(&self.plan.tiles[at], &grower, &mut scratch, progress)?);
+                progress.step();
+            }
+            Ok(())
+        });
+        results.into_iter().collect()
+    }
+
+    fn tile(
+        &self,
+        plan: &PlanTile,
+        grower: &Grower,
+        scratch: &mut Scratch,
+        progress: &Progress,
+    ) -> Result<Patch, TraceError> {
+        let Scratch { worker, folder, grown } = scratch;
+        let samples = self.scene.trace.samples;
+        let layout = Layout::new(self.scene.picture.size);
+        let old = self.forest.tiles[plan.tile].as_deref();
+        let mut trees = KeptTrees::default();
+        trees.clear();
+        folder.begin_tile();
+        worker.rays = RayCounts::default();
+        let most = (self.budget / 8).max(LEAST_BLOCK_LIMIT);
+        for block in 0..TILE_BLOCKS {
+            if plan.lanes[block] == 0 {
+                if let Some(old) = old {
+                    trees.push_block(old, block);
+                }
+                continue;
+            }
+            grown.clear();
+            let at = (plan.tile, block);
+            let kept = old.map(|old| old.recall(block));
+            let stopped = grower.block_again(worker, at, kept, grown, most, progress);
+            stopped.map_err(|stop| TraceError::of(stop, self.budget))?;
+            let covered = layout.covered(plan.tile, block);
+            folder.block(&mut grown.read(0), covered, samples, &self.names);
+            trees.push_grown(grown, grower.keys());
+        }
+        let shininess: Vec<_> = self.scene.materials.iter().map(|m| Some(m.shininess)).collect();
+        let folded = folder.finish_tile(1.0 / samples as f32, &shininess);
+        let bytes = self.kept.fetch_add(trees.bytes(), Relaxed);
+        let fits = trees.is_whole() && bytes + trees.bytes() <= self.budget;
+        Ok(Patch {
+            tile: plan.tile,
+            blocks: plan.blocks(),
+            nodes: folded.trie.nodes().to_vec(),
+            part: folded.tile,
+            trees: fits.then(|| Arc::new(trees.trimmed())),
+            rays: worker.rays,
+        })
+    }
+}
+
+/// What a thread needs.
+struct Scratch {
+    worker: Worker,
+    folder: Folder,
+    grown: TileTrees,
+}
