@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
+use super::parts::State;
 use super::{CacheError, CacheReport, Cached, Fault, read};
+use crate::fold::Names;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::session::canvas::Canvas;
@@ -46,21 +48,33 @@ impl Session {
 
     /// The session of the cached scene, its picture drawn.
     pub(super) fn from_cached(cached: Cached, options: Options, pool: Arc<ThreadPool>) -> Session {
-        let Cached { scene, geometry, geometry_seconds, forest, transport, trace, report: _ } =
-            cached;
+        let Cached {
+            scene,
+            geometry,
+            geometry_seconds,
+            forest,
+            transport,
+            state,
+            trace,
+            report: _,
+        } = cached;
+        let State { keys, lights, iors } = state;
         let mut session = Session {
             canvas: Canvas::new(scene.picture.size),
             scene: Arc::new(scene),
             options,
             pool,
-            geometry: Arc::new(geometry),
             forest,
             program: TermProgram::new(&transport.trie),
             transport,
             terms: TermValues::default(),
             before: Vec::new(),
+            keys,
+            names: Names { materials: geometry.materials().to_vec(), lights },
+            iors,
             trace,
             geometry_seconds,
+            geometry: Arc::new(geometry),
         };
         session.evaluate_terms();
         session.draw(Tiles::All);

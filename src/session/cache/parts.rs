@@ -2,20 +2,24 @@
 
 use super::codec::{Item, Section, Source, Unsound, record};
 use crate::film::layout::LANES;
-use crate::fold::transport::{BlockStart, HighlightList, Highlights, Plane, Single, TransportTile};
+use crate::fold::transport::{
+    BlockStart, Frontier, FrontierMark, HighlightList, Highlights, Plane, Single, TransportTile,
+};
 use crate::fold::trie::{Marks, Trie, TrieNode};
 use crate::forest::grow::RayCounts;
-use crate::forest::tree::{Ends, LightHit, Node, Start, TileTrees};
+use crate::forest::kept::{KeptLight, KeptNode, KeptStart, KeptTrees};
+use crate::forest::tree::{Branch, Ends};
 use crate::scene::factor::{Factor, Kind};
 use crate::session::trace::TraceReport;
 
 record!(TrieNode { parent: u32, factor: Factor, marks: Marks });
 record!(BlockStart { plane: u32, single: u32 });
 record!(Single { place: u32, coefficient: f32 });
+record!(FrontierMark { entry: u32, mask: u16, rays: u16 });
 record!(HighlightList { at: u32, material: u16, mask: u16 });
-record!(Node { t: f64, primitive: u32, material: u16, lights: u16, slot: u8, ends: Ends });
-record!(LightHit { light: u16, crossed: u16, n_dot_l: f32, one_minus_r_dot_v: f32 });
-record!(Start { sample: u32, node: u32, light: u32, crossing: u32 });
+record!(KeptNode { t: f64, primitive: u32, lights: u16, ends: Ends });
+record!(KeptLight { key: u16, crossed: u16 });
+record!(KeptStart { word: u32, node: u32, light: u32, crossing: u32 });
 record!(RayCounts { camera: u64, reflected: u64, transmitted: u64, shadow: u64 });
 record!(TraceReport { seconds: f64, fold_seconds: f64, rays: RayCounts, nodes: u64 });
 
@@ -42,8 +46,7 @@ macro_rules! by_bits {
 // What stands behind `else` is never seen: bytes that are not sound are not taken.
 by_bits!(Factor as u32, else Factor::new(Kind::Background, 0, 0));
 by_bits!(Marks as u8, else Marks::default());
-by_bits!(Ends as u8, else Ends::new(
-    crate::forest::tree::Branch::Zero, crate::forest::tree::Branch::Zero, false));
+by_bits!(Ends as u8, else Ends::new(Branch::Zero, Branch::Zero, false));
 
 impl Item for Plane {
     const BYTES: usize = LANES * 4;
@@ -63,24 +66,43 @@ impl Item for Plane {
     }
 }
 
-/// Writes the terms.
-pub(super) fn put_trie(trie: &Trie, out: &mut Section) {
-    out.array(trie.nodes());
+/// What a session knows of its scene besides what the scene says.
+pub(super) struct State {
+    /// Per light the key of its records in the trees.
+    pub(super) keys: Vec<u16>,
+    /// Per light its place in the list of factors.
+    pub(super) lights: Vec<u16>,
+    /// Per material the index of refraction with which its nodes stand in the trees.
+    pub(super) iors: Vec<f64>,
 }
 
-/// Reads the terms.
-pub(super) fn take_trie(from: &mut Source) -> Result<Trie, Unsound> {
-    Trie::from_canonical(from.array::<TrieNode>()?).ok_or("the terms are out of order")
+/// Writes the terms and what their factors stand for.
+pub(super) fn put_terms(trie: &Trie, state: &State, out: &mut Section) {
+    let State { keys, lights, iors } = state;
+    out.array(trie.nodes());
+    out.array(keys);
+    out.array(lights);
+    out.array(iors);
+}
+
+/// Reads the terms and what their factors stand for.
+pub(super) fn take_terms(from: &mut Source) -> Result<(Trie, State), Unsound> {
+    let trie = Trie::from_canonical(from.array::<TrieNode>()?).ok_or("they are out of order")?;
+    Ok((trie, State { keys: from.array()?, lights: from.array()?, iors: from.array()? }))
 }
 
 /// Writes a tile's part of the matrix without its highlight lists.
 pub(super) fn put_matrix(tile: &TransportTile, out: &mut Section) {
-    let TransportTile { terms, starts, entries, planes, singles, highlights: _ } = tile;
+    let TransportTile { terms, starts, entries, planes, singles, highlights: _, frontier } = tile;
     out.array(terms);
     out.array(starts);
     out.array(entries);
     out.array(planes);
     out.array(singles);
+    let Frontier { terms, starts, marks } = frontier;
+    out.array(terms);
+    out.array(starts);
+    out.array(marks);
 }
 
 /// Reads a tile's part of the matrix without its highlight lists.
@@ -92,6 +114,7 @@ pub(super) fn take_matrix(from: &mut Source) -> Result<TransportTile, Unsound> {
         planes: from.array()?,
         singles: from.array()?,
         highlights: None,
+        frontier: Frontier { terms: from.array()?, starts: from.array()?, marks: from.array()? },
     })
 }
 
@@ -109,8 +132,8 @@ pub(super) fn take_highlights(from: &mut Source) -> Result<Highlights, Unsound> 
 }
 
 /// Writes a tile's trees.
-pub(super) fn put_trees(trees: &TileTrees, out: &mut Section) {
-    let TileTrees { blocks, hits, nodes, lights, crossings } = trees;
+pub(super) fn put_trees(trees: &KeptTrees, out: &mut Section) {
+    let KeptTrees { blocks, hits, nodes, lights, crossings } = trees;
     out.array(blocks);
     out.array(hits);
     out.array(nodes);
@@ -119,8 +142,8 @@ pub(super) fn put_trees(trees: &TileTrees, out: &mut Section) {
 }
 
 /// Reads a tile's trees.
-pub(super) fn take_trees(from: &mut Source) -> Result<TileTrees, Unsound> {
-    Ok(TileTrees {
+pub(super) fn take_trees(from: &mut Source) -> Result<KeptTrees, Unsound> {
+    Ok(KeptTrees {
         blocks: from.array()?,
         hits: from.array()?,
         nodes: from.array()?,

@@ -1,6 +1,7 @@
 //! Reads a cache: parts are checked, unpacked and validated on all threads, within the budget.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 use rayon::ThreadPool;
@@ -13,7 +14,7 @@ use crate::film::layout::Layout;
 use crate::fold::transport::{Transport, TransportTile};
 use crate::fold::trie::Trie;
 use crate::forest::Forest;
-use crate::forest::tree::TileTrees;
+use crate::forest::kept::KeptTrees;
 use crate::geometry::Geometry;
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -35,6 +36,8 @@ pub struct Cached {
     pub forest: Forest,
     /// The matrix, and the highlight lists that were kept and fit.
     pub transport: Transport,
+    /// What else a session knows.
+    pub(super) state: parts::State,
     /// The trace that made it.
     pub trace: TraceReport,
     /// What reading took, geometry included.
@@ -99,10 +102,10 @@ impl<'a> Reader<'a> {
         let geometry = Geometry::build(&self.scene, self.progress)?;
         let geometry_seconds = start.elapsed().as_secs_f64();
         self.progress.begin((2 * numbers.tiles) as u64);
-        let trie = self.trie()?;
+        let (trie, state) = self.terms()?;
         let tiles = self.each_tile(pool, |scratch, tile| self.tile(tile, lists, &trie, scratch))?;
         let within = sound::Surroundings::new(&self.scene, &geometry);
-        let trees: Vec<Option<TileTrees>> =
+        let trees: Vec<Option<Arc<KeptTrees>>> =
             self.each_tile(pool, |scratch, tile| self.trees(tile, trees, &within, scratch))?;
         let layout = Layout::new(self.scene.picture.size);
         let samples = self.scene.trace.samples;
@@ -118,6 +121,7 @@ impl<'a> Reader<'a> {
             geometry_seconds,
             forest: Forest { layout, samples, tiles: trees },
             transport: Transport { layout, samples, trie, tiles },
+            state,
             trace: self.file.header.trace,
             report,
             scene: self.scene,
@@ -141,10 +145,11 @@ impl<'a> Reader<'a> {
         Ok([lists, trees])
     }
 
-    fn trie(&self) -> Result<Trie, Fault> {
+    fn terms(&self) -> Result<(Trie, parts::State), Fault> {
         self.file.part(Numbers::TERMS, &mut Scratch::default(), |source| {
-            let trie = parts::take_trie(source)?;
-            sound::trie(&trie, &self.scene).map(|()| trie)
+            let (trie, state) = parts::take_terms(source)?;
+            sound::state(&state, &self.scene)?;
+            sound::trie(&trie, &self.scene).map(|()| (trie, state))
         })
     }
 
@@ -194,14 +199,14 @@ impl<'a> Reader<'a> {
         trees: usize,
         within: &sound::Surroundings,
         scratch: &mut Scratch,
-    ) -> Result<Option<TileTrees>, Fault> {
+    ) -> Result<Option<Arc<KeptTrees>>, Fault> {
         let number = self.numbers.trees(tile);
         if tile >= trees || !self.file.header.parts[number].is_there() {
             return Ok(None);
         }
         let trees = self.file.part(number, scratch, |source| {
             let trees = parts::take_trees(source)?;
-            within.trees(&trees, tile).map(|()| trees)
+            within.trees(&trees, tile).map(|()| Arc::new(trees))
         })?;
         Ok(Some(trees))
     }

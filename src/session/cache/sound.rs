@@ -2,12 +2,15 @@
 //! reading trees rely on, as an answer instead of a panic.
 
 use super::codec::Unsound;
-use crate::film::layout::{LANES, Layout, Place, TILE_BLOCKS};
+use super::parts::State;
+use crate::film::layout::{LANES, Layout, TILE_BLOCKS};
 use crate::fold::transport::{
-    BlockStart, HighlightList, Highlights, Plane, SPARSE_LANES, Single, TransportTile,
+    BlockStart, Frontier, FrontierMark, HighlightList, Highlights, Plane, SPARSE_LANES, Single,
+    TransportTile,
 };
 use crate::fold::trie::{Marks, ROOT, Trie, TrieNode};
-use crate::forest::tree::{BLOCKED, Branch, LightHit, Node, Start, TileTrees};
+use crate::forest::kept::{KeptLight, KeptNode, KeptStart, KeptTrees};
+use crate::forest::tree::{BLOCKED, Branch};
 use crate::geometry::Geometry;
 use crate::scene::factor::{Factor, Kind};
 use crate::scene::fields::DEPTH;
@@ -31,19 +34,20 @@ pub(super) fn trie(trie: &Trie, scene: &Scene) -> Result<(), Unsound> {
     let slots = slots(scene);
     for node in &trie.nodes()[1..] {
         let TrieNode { parent, factor, marks } = *node;
-        ensure(is_of(factor, &slots, scene.lights.len()), "a term has a factor of nothing")?;
+        ensure(is_of(factor, &slots), "a term has a factor of nothing")?;
         let above = &trie.nodes()[parent as usize];
         let follows = parent == ROOT || above.factor.is_path();
         ensure(follows || !factor.is_path(), "a path goes on behind light")?;
         ensure(!marks.has(Marks::FRONTIER) || factor.is_path(), "a frontier that is no path")?;
-        let shadow = factor.kind() == Kind::Shadow;
+        let shadow = follows && factor.kind() == Kind::Shadow;
         ensure(!marks.has(Marks::WITNESS) || shadow, "a witness that is no shadow")?;
     }
     Ok(())
 }
 
-/// Whether a scene with these slots per material, and so many lights, has the factor.
-fn is_of(factor: Factor, slots: &[usize], lights: usize) -> bool {
+/// Whether a scene with these slots per material has the factor. Lights that are gone have left
+/// their places behind.
+fn is_of(factor: Factor, slots: &[usize]) -> bool {
     let (index, slot) = (factor.index(), factor.slot());
     match factor.kind() {
         Kind::Background => index == 0 && slot == 0,
@@ -53,15 +57,29 @@ fn is_of(factor: Factor, slots: &[usize], lights: usize) -> bool {
         Kind::Ambient | Kind::Diffuse | Kind::Specular => {
             slots.get(index).is_some_and(|slots| slot < *slots)
         }
-        Kind::Light => index < lights && slot == 0,
+        Kind::Light => slot == 0,
         Kind::Channel => index < 3 && slot == 0,
     }
+}
+
+/// Whether a session may know this of a scene.
+pub(super) fn state(state: &State, scene: &Scene) -> Result<(), Unsound> {
+    let State { keys, lights, iors } = state;
+    let each = [keys.len(), lights.len()] == [scene.lights.len(); 2];
+    ensure(each && iors.len() == scene.materials.len(), "of another scene")?;
+    let mut sorted = keys.clone();
+    sorted.sort_unstable();
+    ensure(sorted.is_sorted_by(|a, b| a < b), "two lights have one key")?;
+    ensure(lights.is_sorted_by(|a, b| a < b), "lights are out of order")?;
+    // Not a number stands for several.
+    ensure(iors.iter().all(|ior| !(*ior <= 0.0)), "an index of refraction is not above 0")
 }
 
 /// Whether a tile's part of a matrix of so many terms is sound. Its highlight lists are not looked
 /// at.
 pub(super) fn matrix(tile: &TransportTile, trie_nodes: usize) -> Result<(), Unsound> {
-    let TransportTile { terms, starts, entries, planes, singles, highlights: _ } = tile;
+    let TransportTile { terms, starts, entries, planes, singles, highlights: _, frontier } = tile;
+    ends(frontier, trie_nodes)?;
     ensure(terms.is_sorted_by(|a, b| a < b), "the dictionary is out of order")?;
     let last = terms.last().is_none_or(|last| (*last as usize) < trie_nodes);
     ensure(last, "the dictionary has an unknown term")?;
@@ -82,6 +100,26 @@ pub(super) fn matrix(tile: &TransportTile, trie_nodes: usize) -> Result<(), Unso
     let finite = |plane: &Plane| plane.0.iter().fold(true, |all, c| all & c.is_finite());
     let all = planes.iter().all(finite) && singles.iter().all(|s| s.coefficient.is_finite());
     ensure(all, "a coefficient is not finite")
+}
+
+/// Whether the frontier of a tile is one of so many terms.
+fn ends(frontier: &Frontier, trie_nodes: usize) -> Result<(), Unsound> {
+    let Frontier { terms, starts, marks } = frontier;
+    ensure(terms.is_sorted_by(|a, b| a < b), "the frontier is out of order")?;
+    let last = terms.last().is_none_or(|last| (*last as usize) < trie_nodes);
+    ensure(last, "the frontier has an unknown term")?;
+    let whole = starts.len() == TILE_BLOCKS + 1 && starts.is_sorted() && starts[0] == 0;
+    ensure(whole && starts[TILE_BLOCKS] as usize == marks.len(), "the frontier leaves out blocks")?;
+    let sound = |mark: &FrontierMark| {
+        let FrontierMark { entry, mask, rays } = *mark;
+        (entry as usize) < terms.len() && mask != 0 && rays > 0
+    };
+    ensure(marks.iter().all(sound), "a mark of the frontier is of nothing")?;
+    for pair in starts.windows(2) {
+        let marks = &marks[pair[0] as usize..pair[1] as usize];
+        ensure(marks.is_sorted_by(|a, b| a.entry < b.entry), "marks are out of order")?;
+    }
+    Ok(())
 }
 
 /// Whether the blocks of a tile begin where the ones before them end.
@@ -129,97 +167,91 @@ fn target(list: &HighlightList, tile: &TransportTile) -> Result<(), Unsound> {
 }
 
 /// What trees may refer to.
-pub(super) struct Surroundings<'a> {
-    scene: &'a Scene,
-    geometry: &'a Geometry,
-    slots: Vec<usize>,
+pub(super) struct Surroundings {
     layout: Layout,
+    samples: usize,
+    primitives: usize,
+    solids: usize,
 }
 
-impl<'a> Surroundings<'a> {
+impl Surroundings {
     /// Those of a scene and its geometry.
-    pub(super) fn new(scene: &'a Scene, geometry: &'a Geometry) -> Surroundings<'a> {
-        let layout = Layout::new(scene.picture.size);
-        Surroundings { scene, geometry, slots: slots(scene), layout }
+    pub(super) fn new(scene: &Scene, geometry: &Geometry) -> Surroundings {
+        Surroundings {
+            layout: Layout::new(scene.picture.size),
+            samples: scene.trace.samples as usize,
+            primitives: geometry.primitives(),
+            solids: scene.solids.len(),
+        }
     }
 
     /// Whether the trees of a tile are whole: whoever reads the samples of its pixels in order
     /// comes to the end of every array at once, and to nothing that the scene has not.
-    pub(super) fn trees(&self, trees: &TileTrees, tile: usize) -> Result<(), Unsound> {
-        let TileTrees { blocks, hits, nodes, lights, crossings } = trees;
-        ensure(blocks.len() == TILE_BLOCKS, "not 64 blocks")?;
-        let mut walk = Walk { trees, at: Start::default(), depths: Vec::new() };
-        for (block, start) in blocks.iter().enumerate() {
+    pub(super) fn trees(&self, trees: &KeptTrees, tile: usize) -> Result<(), Unsound> {
+        let KeptTrees { blocks, hits, nodes, lights, crossings } = trees;
+        let starts = blocks.split_last().filter(|_| trees.is_whole());
+        let (end, starts) = starts.ok_or("not 64 blocks")?;
+        let mut walk = Walk { trees, at: KeptStart::default(), depths: Vec::new() };
+        for (block, start) in starts.iter().enumerate() {
             ensure(*start == walk.at, "a block starts elsewhere than its samples")?;
-            let pixel = |lane: &usize| self.layout.pixel(Place { tile, block, lane: *lane });
-            let pixels = (0..LANES).filter(|lane| pixel(lane).is_some()).count();
-            for _ in 0..pixels * self.scene.trace.samples as usize {
-                walk.sample(self)?;
-            }
+            let pixels = self.layout.covered(tile, block).into_iter().filter(|lane| *lane).count();
+            walk.block(pixels * self.samples, self)?;
         }
-        let Start { sample, node, light, crossing } = walk.at;
-        let read = [sample, node, light, crossing].map(|n| n as usize);
+        ensure(*end == walk.at, "the last block ends elsewhere than its samples")?;
+        let KeptStart { word, node, light, crossing } = walk.at;
+        let read = [word, node, light, crossing].map(|n| n as usize);
         let all = [hits.len(), nodes.len(), lights.len(), crossings.len()];
         ensure(read == all, "something is left over")
-    }
-
-    fn node(&self, node: &Node) -> Result<(), Unsound> {
-        let Node { t, primitive, material, lights: _, slot, ends } = *node;
-        ensure(t > 0.0 && t.is_finite(), "a distance is not above 0")?;
-        ensure((primitive as usize) < self.geometry.primitives(), "an unknown primitive")?;
-        let solid = &self.scene.solids[self.geometry.solid(primitive) as usize];
-        ensure(solid.material == usize::from(material), "a surface of another material")?;
-        ensure(usize::from(slot) < self.slots[solid.material], "an unknown slot")?;
-        let total = ends.transmitted() == Branch::Absent;
-        let both = ends.reflected() != Branch::Absent && ends.total() == total;
-        ensure(both, "branches that no surface has")
-    }
-
-    fn light(&self, hit: &LightHit, crossed: &[u16]) -> Result<(), Unsound> {
-        let LightHit { light, crossed: _, n_dot_l, one_minus_r_dot_v } = *hit;
-        ensure((light as usize) < self.scene.lights.len(), "an unknown light")?;
-        let known = crossed.iter().all(|&m| (m as usize) < self.slots.len());
-        ensure(known && crossed.is_sorted(), "crossings out of order")?;
-        let finite = n_dot_l.is_finite() && one_minus_r_dot_v.is_finite();
-        ensure(finite, "a cosine is not finite")
     }
 }
 
 /// Reads a tile's trees in order, and never beyond their ends.
 struct Walk<'a> {
-    trees: &'a TileTrees,
-    at: Start,
+    trees: &'a KeptTrees,
+    at: KeptStart,
     /// Depths of the nodes that are still to come of the present sample, the next one last.
     depths: Vec<u64>,
 }
 
+const CUT: Unsound = "trees end too early";
+
 impl Walk<'_> {
-    fn sample(&mut self, within: &Surroundings) -> Result<(), Unsound> {
-        const END: Unsound = "trees end too early";
-        let hit = *self.trees.hits.get(self.at.sample as usize).ok_or(END)?;
-        self.at.sample += 1;
-        self.depths.clear();
-        self.depths.extend(hit.then_some(0));
-        while let Some(depth) = self.depths.pop() {
-            ensure(depth <= DEPTH.high as u64, "a tree deeper than the deepest limit")?;
-            let node = self.trees.nodes.get(self.at.node as usize).ok_or(END)?;
-            self.at.node += 1;
-            within.node(node)?;
-            for branch in [node.ends.reflected(), node.ends.transmitted()] {
-                self.depths.extend((branch == Branch::Grown).then_some(depth + 1));
+    fn block(&mut self, samples: usize, within: &Surroundings) -> Result<(), Unsound> {
+        for sample in 0..samples {
+            let word = self.trees.hits.get(self.at.word as usize + sample / 64).ok_or(CUT)?;
+            self.depths.clear();
+            self.depths.extend((word >> (sample % 64) & 1 != 0).then_some(0));
+            while let Some(depth) = self.depths.pop() {
+                ensure(depth <= DEPTH.high as u64, "a tree deeper than the deepest limit")?;
+                self.node(depth, within)?;
             }
-            let mut previous = None;
-            for _ in 0..node.lights {
-                let hit = self.trees.lights.get(self.at.light as usize).ok_or(END)?;
-                let from = self.at.crossing as usize;
-                let count = if hit.crossed == BLOCKED { 1 } else { usize::from(hit.crossed) };
-                let crossed = self.trees.crossings.get(from..from + count).ok_or(END)?;
-                self.at.light += 1;
-                self.at.crossing += count as u32;
-                within.light(hit, crossed)?;
-                ensure(previous < Some(hit.light), "lights out of order")?;
-                previous = Some(hit.light);
-            }
+        }
+        self.at.word += samples.div_ceil(64) as u32;
+        Ok(())
+    }
+
+    fn node(&mut self, depth: u64, within: &Surroundings) -> Result<(), Unsound> {
+        let node = self.trees.nodes.get(self.at.node as usize).ok_or(CUT)?;
+        let KeptNode { t, primitive, lights, ends } = *node;
+        self.at.node += 1;
+        ensure(t > 0.0 && t.is_finite(), "a distance is not above 0")?;
+        ensure((primitive as usize) < within.primitives, "an unknown primitive")?;
+        let total = ends.transmitted() == Branch::Absent;
+        let both = ends.reflected() != Branch::Absent && ends.total() == total;
+        ensure(both, "branches that no surface has")?;
+        for branch in [ends.reflected(), ends.transmitted()] {
+            self.depths.extend((branch == Branch::Grown).then_some(depth + 1));
+        }
+        for _ in 0..lights {
+            let light = self.trees.lights.get(self.at.light as usize).ok_or(CUT)?;
+            let KeptLight { key: _, crossed } = *light;
+            let from = self.at.crossing as usize;
+            let count = if crossed == BLOCKED { 1 } else { usize::from(crossed) };
+            let solids = self.trees.crossings.get(from..from + count).ok_or(CUT)?;
+            let known = solids.iter().all(|&solid| (solid as usize) < within.solids);
+            ensure(known, "an unknown solid")?;
+            self.at.light += 1;
+            self.at.crossing += count as u32;
         }
         Ok(())
     }
@@ -328,7 +360,7 @@ mod tests {
             ("a term has a factor of nothing", |t| {
                 below_last(t, Factor::new(Kind::Diffuse, u16::MAX, 0));
             }),
-            ("a term has a factor of nothing", |t| below_last(t, Factor::new(Kind::Light, 99, 0))),
+            ("a term has a factor of nothing", |t| below_last(t, Factor::new(Kind::Light, 0, 1))),
             ("a term has a factor of nothing", |t| below_last(t, Factor::new(Kind::Ambient, 0, 9))),
             ("a term has a factor of nothing", |t| below_last(t, Factor::new(Kind::Channel, 3, 0))),
             ("a path goes on behind light", |t| below_last(t, Factor::new(Kind::Reflect, 0, 0))),
@@ -345,41 +377,78 @@ mod tests {
     }
 
     #[test]
+    fn faults_of_what_a_session_knows_are_found() {
+        let session = session();
+        let sound = || State {
+            keys: session.keys.clone(),
+            lights: session.names.lights.clone(),
+            iors: session.iors.clone(),
+        };
+        let fault = |harm: fn(&mut State)| {
+            let mut harmed = sound();
+            harm(&mut harmed);
+            state(&harmed, session.scene())
+        };
+        assert_eq!(fault(|_| ()), Ok(()));
+        assert_eq!(fault(|s| s.iors[0] = f64::NAN), Ok(()));
+        assert_eq!(fault(|s| s.iors[0] = 0.0), Err("an index of refraction is not above 0"));
+        assert_eq!(fault(|s| s.iors.push(1.0)), Err("of another scene"));
+        assert_eq!(fault(|s| _ = s.keys.pop()), Err("of another scene"));
+        assert_eq!(fault(|s| s.keys[0] = s.keys[1]), Err("two lights have one key"));
+        assert_eq!(fault(|s| s.lights.swap(0, 1)), Err("lights are out of order"));
+    }
+
+    #[test]
+    fn faults_of_a_frontier_are_found() {
+        let session = session();
+        let terms = session.transport().trie.nodes().len();
+        let several = |tile: &&TransportTile| tile.frontier.terms.len() > 1;
+        let tile = session.transport().tiles.iter().find(several).unwrap();
+        fn two(frontier: &Frontier) -> usize {
+            let pair = frontier.starts.windows(2).find(|pair| pair[1] > pair[0] + 1);
+            pair.map_or(0, |pair| pair[0] as usize)
+        }
+        let cases: [Case<Frontier>; 8] = [
+            ("the frontier is out of order", |f| f.terms.swap(0, 1)),
+            ("the frontier has an unknown term", |f| f.terms.push(1 << 30)),
+            ("the frontier leaves out blocks", |f| _ = f.starts.pop()),
+            ("the frontier leaves out blocks", |f| f.starts[1] = u32::MAX),
+            ("the frontier leaves out blocks", |f| _ = f.marks.pop()),
+            ("a mark of the frontier is of nothing", |f| f.marks[0].mask = 0),
+            ("a mark of the frontier is of nothing", |f| f.marks[0].entry = u32::MAX),
+            ("marks are out of order", |f| {
+                let at = two(f);
+                f.marks.swap(at, at + 1);
+            }),
+        ];
+        hold(&tile.frontier, &cases, |frontier| ends(frontier, terms));
+    }
+
+    #[test]
     fn faults_of_trees_are_found() {
         let session = session();
-        let cases: [Case<TileTrees>; 17] = [
+        let cases: [Case<KeptTrees>; 14] = [
             ("not 64 blocks", |t| _ = t.blocks.pop()),
             ("a block starts elsewhere than its samples", |t| t.blocks[1].node += 1),
+            ("the last block ends elsewhere than its samples", |t| t.blocks[64].word += 1),
             ("trees end too early", |t| _ = t.hits.pop()),
             ("trees end too early", |t| _ = t.nodes.pop()),
             ("trees end too early", |t| _ = t.lights.pop()),
-            ("something is left over", |t| t.hits.push(false)),
+            ("something is left over", |t| t.hits.push(0)),
             ("something is left over", |t| t.crossings.push(0)),
             ("a distance is not above 0", |t| t.nodes[5].t = f64::NAN),
             ("an unknown primitive", |t| t.nodes[5].primitive = u32::MAX),
-            ("a surface of another material", |t| t.nodes[5].material += 1),
-            ("an unknown slot", |t| t.nodes[5].slot = 2),
             ("branches that no surface has", |t| {
                 t.nodes[5].ends = Ends::new(Branch::Absent, Branch::Missed, false);
             }),
             ("branches that no surface has", |t| {
                 t.nodes[5].ends = Ends::new(Branch::Missed, Branch::Missed, true);
             }),
-            ("an unknown light", |t| t.lights[0].light = 99),
-            ("a cosine is not finite", |t| t.lights[0].n_dot_l = f32::INFINITY),
-            ("crossings out of order", |t| t.crossings[0] = u16::MAX),
-            ("lights out of order", |t| {
-                let several = t.nodes.iter().scan(0, |from, node| {
-                    let own = (*from, node.lights);
-                    *from += usize::from(node.lights);
-                    Some(own)
-                });
-                let (from, _) = several.into_iter().find(|(_, lights)| *lights > 1).unwrap();
-                t.lights[from + 1].light = t.lights[from].light;
-            }),
+            ("an unknown solid", |t| t.crossings[0] = u32::MAX),
+            ("trees end too early", |t| t.lights[0].crossed = BLOCKED - 1),
         ];
         let within = Surroundings::new(session.scene(), session.geometry());
-        let trees = session.forest().tiles[0].as_ref().unwrap();
+        let trees = session.forest().tiles[0].as_deref().unwrap();
         hold(trees, &cases, |trees| within.trees(trees, 0));
         // The second tile has fewer pixels.
         assert!(within.trees(trees, 1).is_err());
@@ -387,16 +456,12 @@ mod tests {
 
     #[test]
     fn a_tree_deeper_than_any_limit_is_found() {
-        let mut session = session();
-        let trees = session.forest.tiles[1].as_mut().unwrap();
-        let at = trees.hits.iter().position(|hit| *hit).unwrap();
+        let session = session();
+        let kept = session.forest().tiles[1].as_deref().unwrap();
+        assert_eq!(kept.hits[0] & 1, 1, "the first sample meets the scene");
         let ends = Ends::new(Branch::Grown, Branch::Zero, false);
-        let first = Node { lights: 0, ends, ..trees.nodes[0] };
-        assert_eq!(at, 0, "the first sample meets the scene");
-        let mut deep = TileTrees { hits: trees.hits.clone(), ..TileTrees::default() };
-        deep.nodes = vec![first; 100];
-        deep.blocks = vec![Start::default(); TILE_BLOCKS];
-        let trees = deep;
+        let first = KeptNode { lights: 0, ends, ..kept.nodes[0] };
+        let trees = KeptTrees { nodes: vec![first; 100], ..kept.clone() };
         let within = Surroundings::new(session.scene(), session.geometry());
         assert_eq!(within.trees(&trees, 1), Err("a tree deeper than the deepest limit"));
     }

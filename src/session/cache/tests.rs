@@ -9,8 +9,6 @@ use twox_hash::XxHash3_64;
 use super::codec::Section;
 use super::file::{Header, MAGIC, Numbers, Opened, PREFIX, Part, Scratch, pack};
 use super::*;
-use crate::film::layout::{LANES, Place, TILE_BLOCKS};
-use crate::fold::Folder;
 use crate::progress::Progress;
 use crate::scene::{Scene, read as scene_text};
 use crate::session::{Options, Session};
@@ -301,32 +299,26 @@ fn no_changed_byte_gives_another_picture() {
 
 /// Does everything with a cache that a session does, and panics where something is not sound.
 fn exercise(cached: Cached, opened: &Arc<Scene>, pool: &Arc<ThreadPool>) {
-    let Cached { scene, transport, forest, geometry, .. } = &cached;
-    transport.validate();
-    forest.validate(scene.materials.len(), scene.lights.len());
-    let mut folder = Folder::default();
-    for (tile, trees) in forest.tiles.iter().enumerate() {
-        let Some(trees) = trees else { continue };
-        folder.begin_tile();
-        for block in 0..TILE_BLOCKS {
-            let covered = std::array::from_fn::<bool, LANES, _>(|lane| {
-                transport.layout.pixel(Place { tile, block, lane }).is_some()
-            });
-            folder.block(&mut trees.read(block), covered, transport.samples);
-        }
-        let exponents: Vec<_> = scene.materials.iter().map(|m| Some(m.shininess)).collect();
-        let _ = folder.finish_tile(0.5, &exponents);
-        assert!(trees.nodes.iter().all(|n| (geometry.solid(n.primitive) as usize) < 1 << 20));
-    }
+    cached.transport.validate();
+    let progress = Progress::default();
     let options = Options { threads: 2, memory: 1 << 30 };
     let mut session = Session::from_cached(cached, options, pool.clone());
+    for tile in 0..session.forest().tiles.len() {
+        let _ = session.trees(tile, &progress);
+    }
     let mut shiny = session.scene().clone();
     shiny.materials.iter_mut().for_each(|material| material.shininess = 3.0);
     let _ = session.edit_without_rays(&Arc::new(shiny));
-    let _ = session.edit_without_rays(opened);
+    let mut deep = session.scene().clone();
+    deep.trace.depth += 1;
+    let _ = session.edit(deep, &progress);
+    let mut moved = session.scene().clone();
+    moved.lights.remove(0);
+    let _ = session.edit(moved, &progress);
+    let _ = session.edit(opened.clone(), &progress);
     session.redraw();
     let _ = session.film();
-    let _ = crate::session::cost::cost(&session, "trace.depth");
+    let _ = crate::session::cost::cost(&mut session, "trace.depth");
 }
 
 #[test]

@@ -124,7 +124,11 @@ impl<'a> Writer<'a> {
         let tiles = self.numbers.tiles;
         match number {
             Numbers::SCENE => section.array(scene::write::text(scene).as_bytes()),
-            Numbers::TERMS => parts::put_trie(&transport.trie, section),
+            Numbers::TERMS => {
+                let (keys, lights) = (self.session.keys.clone(), self.session.names.lights.clone());
+                let state = parts::State { keys, lights, iors: self.session.iors.clone() };
+                parts::put_terms(&transport.trie, &state, section);
+            }
             n if n < self.numbers.lists(0) => {
                 parts::put_matrix(&transport.tiles[n - self.numbers.matrix(0)], section);
             }
