@@ -127,9 +127,22 @@ fn what_is_kept_after_edits_is_as_good() {
             set(&mut scene, random.pick(&names), &format!("{:.3}", random.unit()));
         }
         scene.materials[step % 3].shininess = 5.0 + step as f32;
+        match step {
+            1 => set(&mut scene, "materials.glass.ior", "1.4"),
+            2 => set(&mut scene, "lights.sun.direction", "[-0.4, 0.5, -1]"),
+            3 => drop(scene.lights.remove(0)),
+            4 => scene.solids[1].material = 3,
+            _ => {}
+        }
         session.edit(scene, &Progress::default()).unwrap();
         keep(&session, &path, step % 2 == 0);
-        session = reopens_as(session.scene(), &path, Class::None, &format!("step {step}"));
+        let what = format!("step {step}");
+        session = reopens_as(session.scene(), &path, Class::None, &what);
+        // Trees that were kept answer the rays of an edit as those of the session would.
+        let mut deeper = session.scene().clone();
+        deeper.trace.depth += 1;
+        session.edit(deeper.clone(), &Progress::default()).unwrap();
+        assert_same_picture(&session, &open(&deeper, 2), &format!("{what}, and deeper"));
     }
 }
 
