@@ -138,11 +138,11 @@ pub(super) fn highlights(
     materials: usize,
 ) -> Result<(), Unsound> {
     let Highlights { lists, counts, log2_cosines } = highlights;
-    let mut lanes = 0;
+    let (mut lanes, mut block) = (0, 0);
     for list in lists {
         ensure(list.mask != 0, "a highlight of no lane")?;
         ensure((list.material as usize) < materials, "a highlight of an unknown material")?;
-        target(list, tile)?;
+        block = target(list, tile, block)?;
         lanes += list.mask.count_ones() as usize;
     }
     ensure(lanes == counts.len(), "not one count per lane of every highlight")?;
@@ -153,17 +153,24 @@ pub(super) fn highlights(
     ensure(log2_cosines.chunks(LANES).all(cosine), "a cosine above 1")
 }
 
-/// Whether a highlight's coefficients stand where its list says.
-fn target(list: &HighlightList, tile: &TransportTile) -> Result<(), Unsound> {
-    if list.at & HighlightList::SINGLE == 0 {
-        return ensure((list.at as usize) < tile.planes.len(), "a highlight of no plane");
+/// The block in which a highlight's coefficients stand, where its list says: `block` or one after it.
+fn target(list: &HighlightList, tile: &TransportTile, block: usize) -> Result<usize, Unsound> {
+    let HighlightList { at, material: _, mask } = *list;
+    let single = at & HighlightList::SINGLE != 0;
+    let start = |at: &BlockStart| if single { at.single } else { at.plane };
+    let from = at & !HighlightList::SINGLE;
+    let after = tile.starts.partition_point(|begin| start(begin) <= from);
+    ensure(after <= TILE_BLOCKS, "a highlight of nothing")?;
+    ensure(after > block, "highlights are not block by block")?;
+    if single {
+        let to = from + mask.count_ones();
+        ensure(to <= tile.starts[after].single, "a highlight of several blocks")?;
+        let singles = &tile.singles[from as usize..to as usize];
+        let lanes = singles.iter().fold(0, |lanes, s| lanes | 1u16 << s.lane());
+        let one = singles.iter().all(|s| s.entry() == singles[0].entry());
+        ensure(lanes == mask && one, "a highlight of other lanes")?;
     }
-    let from = (list.at & !HighlightList::SINGLE) as usize;
-    let to = from + list.mask.count_ones() as usize;
-    let singles = tile.singles.get(from..to).ok_or("a highlight of no singles")?;
-    let mask = singles.iter().fold(0, |mask, s| mask | 1u16 << s.lane());
-    let one = singles.iter().all(|s| s.entry() == singles[0].entry());
-    ensure(mask == list.mask && one, "a highlight of other lanes")
+    Ok(after - 1)
 }
 
 /// What trees may refer to.
@@ -325,11 +332,16 @@ mod tests {
     fn faults_of_highlight_lists_are_found() {
         let session = session();
         let tile = &session.transport().tiles[0];
-        let cases: [Case<Highlights>; 11] = [
+        let cases: [Case<Highlights>; 13] = [
             ("a highlight of no lane", |h| h.lists[0].mask = 0),
             ("a highlight of an unknown material", |h| h.lists[0].material = u16::MAX),
-            ("a highlight of no plane", |h| h.lists[0].at = u32::MAX >> 1),
-            ("a highlight of no singles", |h| h.lists[0].at = u32::MAX),
+            ("a highlight of nothing", |h| h.lists[0].at = u32::MAX >> 1),
+            ("a highlight of nothing", |h| h.lists[0].at = u32::MAX),
+            ("highlights are not block by block", |h| h.lists.reverse()),
+            ("a highlight of several blocks", |h| {
+                let some = |l: &&mut HighlightList| l.at & HighlightList::SINGLE != 0;
+                h.lists.iter_mut().rfind(some).unwrap().mask = u16::MAX;
+            }),
             ("a highlight of other lanes", |h| {
                 let some = |l: &&mut HighlightList| l.at & HighlightList::SINGLE != 0;
                 let list = h.lists.iter_mut().find(some).unwrap();
