@@ -72,7 +72,10 @@ pub(super) fn state(state: &State, scene: &Scene) -> Result<(), Unsound> {
     ensure(sorted.is_sorted_by(|a, b| a < b), "two lights have one key")?;
     ensure(lights.is_sorted_by(|a, b| a < b), "lights are out of order")?;
     // Not a number stands for several.
-    ensure(iors.iter().all(|ior| !(*ior <= 0.0)), "an index of refraction is not above 0")
+    ensure(
+        iors.iter().all(|ior| ior.is_nan() || *ior > 0.0),
+        "an index of refraction is not above 0",
+    )
 }
 
 /// Whether a tile's part of a matrix of so many terms is sound. Its highlight lists are not looked
