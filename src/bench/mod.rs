@@ -1,5 +1,6 @@
 //! Measures a scene: tracing, folding, re-shading, memory, against what the memory allows.
 
+mod classes;
 mod memory;
 
 use std::time::Instant;
@@ -53,6 +54,13 @@ pub fn measure(name: &str, scene: Scene, options: Options) -> Result<Value, Trac
     row["speedup"] = json!(report.seconds * 1e3 / shading.eight_bit.median);
     let edits = Edits::measure(&mut session)?;
     row["edit_ms"] = edits.json();
+    let by = classes::Yardstick {
+        trace: report.seconds * 1e3,
+        rays: report.rays.total() as f64,
+        reshade: shading.eight_bit.median,
+    };
+    session.trace_again(&progress)?;
+    row["classes"] = classes::measure(&mut session, &by)?;
     row["peak_rss_mb"] = json!(memory::peak_resident_mb());
     Ok(row)
 }
@@ -81,7 +89,7 @@ pub fn summary(row: &Value) -> String {
         number("/bytes_per_pixel/transport"),
         number("/bytes_per_pixel/highlights"),
         number("/peak_rss_mb"),
-    )
+    ) + &classes::summary(&row["classes"])
 }
 
 fn traced(

@@ -192,6 +192,11 @@ impl Trie {
         ranks
     }
 
+    /// The same terms, only to be read.
+    pub fn frozen(&self) -> Trie {
+        Trie { nodes: self.nodes.clone(), table: Vec::new() }
+    }
+
     /// Exchanges factors for others in the same order. The result cannot be added to.
     pub fn rename(&mut self, other: impl Fn(Factor) -> Factor) {
         self.nodes.iter_mut().skip(1).for_each(|node| node.factor = other(node.factor));

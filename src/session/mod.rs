@@ -271,13 +271,13 @@ impl Session {
         let keep = |patch| patches.lock().expect("no worker panicked").push(patch);
         regrow.run(&self.pool, progress, &keep)?;
         let patches = patches.into_inner().expect("no worker panicked");
-        self.take_patches(regrow, patches)
+        self.take_patches(&regrow, patches)
     }
 
     /// Puts what a plan gave in place.
     pub(super) fn take_patches(
         &mut self,
-        regrow: Regrow,
+        regrow: &Regrow,
         patches: Vec<Patch>,
     ) -> Result<EditReport, TraceError> {
         let mut rays = RayCounts::default();
@@ -400,7 +400,7 @@ impl Session {
             let geometry = Geometry::build(&scene, progress)?;
             (Arc::new(geometry), start.elapsed().as_secs_f64())
         } else {
-            (self.geometry.clone(), self.geometry_seconds)
+            (Arc::new(self.geometry.with_surfaces_of(&scene)), self.geometry_seconds)
         };
         let (pool, options, reuse) = (self.pool.clone(), self.options, self.take_trees());
         let start = Start { scene, geometry, pool, options, kept: Kept::Trees, reuse };
@@ -431,6 +431,15 @@ impl Session {
         let values = &self.terms.values;
         let frame = self.canvas.edit();
         cpu::frame(&self.pool, &self.transport, values, gain, tiles, frame);
+    }
+
+    /// Draws the present trees as `scene` shows them, as far as they reach: pixels that a plan for it
+    /// does not name, and that have no highlight of another exponent, are final.
+    pub(super) fn draw_ahead(&self, scene: &Scene, change: &Change, frame: &mut Frame) {
+        let mut terms = TermValues::default();
+        terms.evaluate(&self.program, &self.factors_ahead(scene, change));
+        let gain = exposure_factor(scene.picture.exposure);
+        cpu::frame(&self.pool, &self.transport, &terms.values, gain, Tiles::All, frame);
     }
 
     /// Traces the same scene again, into the memory of the present trees.

@@ -153,6 +153,14 @@ impl Session {
         FactorValues::new(&renamed)
     }
 
+    /// The same with the lights that stand where they stood; the others are dark.
+    pub(super) fn factors_ahead(&self, scene: &Scene, change: &Change) -> FactorValues {
+        let mut kept = scene.clone();
+        let mut before = change.lights.iter();
+        kept.lights.retain(|_| before.next().is_some_and(Option::is_some));
+        self.factors_after(&kept, change).with_lights_at(&self.light_places_after(change))
+    }
+
     /// Marks the terms that have coefficients of some of the new scene's materials' surfaces.
     fn terms_of(&self, materials: &[u16], change: &Change) -> Vec<bool> {
         let old: Vec<usize> = materials

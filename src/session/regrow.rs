@@ -9,27 +9,31 @@ use rayon::prelude::*;
 use super::Session;
 use super::plan::{Plan, PlanTile};
 use super::trace::{LEAST_BLOCK_LIMIT, TraceError, claim};
+use crate::film::Frame;
 use crate::film::layout::{Layout, TILE_BLOCKS};
 use crate::fold::merge::Blocks;
 use crate::fold::transport::TransportTile;
-use crate::fold::trie::{Marks, Trie, TrieNode};
+use crate::fold::trie::{Marks, Trie};
 use crate::fold::{Folder, Names};
 use crate::forest::Forest;
 use crate::forest::grow::{Grower, RayCounts, Worker};
 use crate::forest::kept::KeptTrees;
 use crate::forest::tree::TileTrees;
 use crate::geometry::Geometry;
+use crate::math::exposure_factor;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::scene::change::Change;
-use crate::shade::terms::TermProgram;
+use crate::scene::factor::FactorValues;
+use crate::shade::cpu;
+use crate::shade::terms::{TermProgram, TermValues};
 
 /// A plan with all that it needs: it can be carried out beside the session that it is of.
 pub struct Regrow {
     /// The scene that is wanted.
     pub(super) scene: Arc<Scene>,
     pub(super) plan: Plan,
-    geometry: Arc<Geometry>,
+    pub(super) geometry: Arc<Geometry>,
     /// Shared with the session.
     forest: Forest,
     keys: Vec<u16>,
@@ -48,7 +52,7 @@ pub struct Patch {
     tile: usize,
     blocks: Blocks,
     /// The terms of `part`.
-    nodes: Vec<TrieNode>,
+    trie: Trie,
     part: TransportTile,
     /// Of the whole tile, or `None` if trees of its other blocks are not kept.
     trees: Option<Arc<KeptTrees>>,
@@ -109,7 +113,11 @@ impl Session {
 
     /// Puts the patches of a plan that was carried out in place: from now on its scene is the
     /// session's. On an error nothing has changed, but for trees that were released.
-    pub(super) fn commit(&mut self, regrow: Regrow, patches: Vec<Patch>) -> Result<(), TraceError> {
+    pub(super) fn commit(
+        &mut self,
+        regrow: &Regrow,
+        patches: Vec<Patch>,
+    ) -> Result<(), TraceError> {
         let replaced = |p: &Patch| self.transport.tiles[p.tile].bytes_of_blocks(p.blocks);
         let matrix = self.transport.bytes() as u64
             + patches.iter().map(|p| p.part.bytes_of_blocks(u64::MAX) as u64).sum::<u64>()
@@ -118,16 +126,16 @@ impl Session {
             return Err(TraceError::Memory { budget: regrow.budget as u64 });
         }
         let change = Change::between(&self.scene, &regrow.scene);
-        let Regrow { scene, geometry, keys, names, iors_after, .. } = regrow;
         self.rename_materials(&change);
         let mut marks = vec![false; self.transport.tiles.len()];
-        self.refold(&scene, &change.refold, &mut marks);
+        self.refold(&regrow.scene, &change.refold, &mut marks);
         for patch in &patches {
             self.forest.tiles[patch.tile] = patch.trees.clone();
         }
         self.merge(patches);
-        (self.scene, self.geometry) = (scene, geometry);
-        (self.keys, self.names, self.iors) = (keys, names, iors_after);
+        (self.scene, self.geometry) = (regrow.scene.clone(), regrow.geometry.clone());
+        (self.keys, self.names) = (regrow.keys.clone(), regrow.names.clone());
+        self.iors = regrow.iors_after.clone();
         self.program = TermProgram::new(&self.transport.trie);
         self.release_to_budget();
         self.redraw();
@@ -192,10 +200,29 @@ impl Session {
 }
 
 impl Patch {
+    /// The tile.
+    pub fn tile(&self) -> usize {
+        self.tile
+    }
+
+    /// Its blocks.
+    pub fn blocks(&self) -> Blocks {
+        self.blocks
+    }
+
+    /// Draws its blocks as `scene` shows them, a scene that needs no other rays than the plan's.
+    pub(super) fn draw(&self, regrow: &Regrow, scene: &Scene, frame: &mut Frame) {
+        let factors = FactorValues::new(scene).with_lights_at(&regrow.names.lights);
+        let mut terms = TermValues::default();
+        terms.evaluate(&TermProgram::new(&self.trie), &factors);
+        let gain = exposure_factor(scene.picture.exposure);
+        cpu::frame_blocks((self.tile, self.blocks), &self.part, &terms.values, gain, frame);
+    }
+
     /// The ids of its terms in `trie`, to which they are added.
     fn intern(&self, trie: &mut Trie) -> Vec<u32> {
-        let mut global = vec![0u32; self.nodes.len()];
-        for (id, node) in self.nodes.iter().enumerate().skip(1) {
+        let mut global = vec![0u32; self.trie.nodes().len()];
+        for (id, node) in self.trie.nodes().iter().enumerate().skip(1) {
             global[id] = trie.intern(global[node.parent as usize], node.factor);
         }
         global
@@ -269,7 +296,7 @@ impl Regrow {
         Ok(Patch {
             tile: plan.tile,
             blocks: plan.blocks(),
-            nodes: folded.trie.nodes().to_vec(),
+            trie: folded.trie.frozen(),
             part: folded.tile,
             trees: fits.then(|| Arc::new(trees.trimmed())),
             rays: worker.rays,

@@ -9,8 +9,9 @@ use rayon::ThreadPool;
 use rayon::prelude::*;
 
 use crate::film::develop::{FrameRows, tile_rows};
-use crate::film::layout::{LANES, TILE_BLOCKS};
+use crate::film::layout::{LANES, Layout, TILE_BLOCKS};
 use crate::film::{Film, FilmBlock, Frame};
+use crate::fold::merge::Blocks;
 use crate::fold::transport::{Block, Plane, Single, Transport, TransportTile};
 
 /// Which tiles to compute.
@@ -69,6 +70,25 @@ pub fn frame(
             }
         });
     });
+}
+
+/// The same of some blocks of a tile: `part` holds the blocks of the set `blocks`, in rising order,
+/// and nothing else.
+pub fn frame_blocks(
+    (tile, blocks): (usize, Blocks),
+    part: &TransportTile,
+    values: &[[f32; 4]],
+    gain: f32,
+    frame: &mut Frame,
+) {
+    let columns = Layout::new(frame.size).grid()[0];
+    let mut gathered = Vec::new();
+    gather(part, values, &mut gathered);
+    let mut rows = tile_rows(frame).nth(tile / columns).expect("a tile of the picture");
+    let marked = (0..TILE_BLOCKS).filter(|block| blocks >> block & 1 != 0);
+    for (index, block) in marked.enumerate() {
+        rows.put(tile % columns, block, &sum(part.block(index), &gathered), gain);
+    }
 }
 
 /// The values of a tile's terms, in the order of its dictionary.

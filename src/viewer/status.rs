@@ -51,6 +51,7 @@ fn stage_text(status: &Status, shown: Option<&Shown>) -> &'static str {
         None => "no picture yet",
         Some(Stage::Coarse) => "coarse",
         Some(Stage::OneSample) => "one sample",
+        Some(Stage::Mending) => "growing",
         Some(Stage::Whole) if status.in_step => "exact",
         Some(Stage::Whole) => "earlier scene",
     }

@@ -30,6 +30,8 @@ struct Face {
     heard: u64,
     events: Vec<Event>,
     costs: Arc<BTreeMap<String, Cost>>,
+    /// Where the person looks, in pixels of the picture.
+    cursor: Option<[f64; 2]>,
 }
 
 /// The job that the status tells of.
@@ -146,6 +148,14 @@ impl Board {
 
     pub(super) fn costs(&self) -> Arc<BTreeMap<String, Cost>> {
         self.face().costs.clone()
+    }
+
+    pub(super) fn look_at(&self, point: Option<[f64; 2]>) {
+        self.face().cursor = point;
+    }
+
+    pub(super) fn cursor(&self) -> Option<[f64; 2]> {
+        self.face().cursor
     }
 
     pub(super) fn eye(&self) -> Option<Eye> {

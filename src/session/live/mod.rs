@@ -3,6 +3,7 @@
 mod badges;
 mod board;
 mod export;
+mod mending;
 mod shader;
 #[cfg(test)]
 mod tests;
@@ -31,6 +32,9 @@ pub enum Stage {
     Coarse,
     /// All pixels, one sample each.
     OneSample,
+    /// What the scene asks for, but for some pixels that are being grown again: they are coarse, and
+    /// one of sixteen is a mark.
+    Mending,
     /// What the scene asks for.
     Whole,
 }
@@ -59,6 +63,8 @@ pub struct Status {
     /// Whether the newest wanted scene is not shown because its trace was cancelled or failed: the
     /// picture before it stays.
     pub held: bool,
+    /// Pixels that are still to be grown again.
+    pub pending: u64,
     /// Bytes of kept trees, matrix and highlight lists.
     pub bytes: u64,
     /// The budget for them.
@@ -165,6 +171,11 @@ impl Live {
     pub fn cancel(&self) {
         let target = self.board.cancel();
         self.order(Message::Cancel(target));
+    }
+
+    /// Tells where the person looks, in pixels of the picture: from there on it is grown again.
+    pub fn look_at(&self, point: Option<[f64; 2]>) {
+        self.board.look_at(point);
     }
 
     /// Traces the wanted scene after it was held.

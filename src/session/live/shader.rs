@@ -1,5 +1,8 @@
 //! The thread that owns the pictures: takes wishes, shades what needs no ray, sends off the rest.
 
+mod exports;
+mod mend;
+
 use std::collections::VecDeque;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
@@ -9,14 +12,16 @@ use std::time::{Duration, Instant};
 use rayon::ThreadPool;
 
 use super::badges::Badges;
-use super::board::{Board, Target, Work};
+use super::board::{self, Board, Target};
+use super::mending::Mending;
 use super::tracer::{self, Compiled, Control, Outcome, staged};
 use super::{Event, Export, Shown, Stage, Status, export, guarded, pool};
 use crate::forest::Forest;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::scene::change::Change;
-use crate::session::{Class, EditReport, Options, Session};
+use crate::session::regrow::Patch;
+use crate::session::{Class, EditReport, Options, Session, Work};
 
 /// What the shader is told, by the window and by the other threads.
 pub(super) enum Message {
@@ -32,6 +37,11 @@ pub(super) enum Message {
         stage: Stage,
         divisor: u32,
         session: Box<Session>,
+    },
+    /// A part of what is grown again.
+    Grown {
+        id: u64,
+        patch: Box<Patch>,
     },
     /// A trace ended.
     Ended {
@@ -72,6 +82,8 @@ struct Running {
     taken: Instant,
     /// Cancelled for the sake of another scene; otherwise a cancel was the person's.
     dropped: bool,
+    /// What of the whole picture is grown again, instead of all.
+    mending: Option<Mending>,
 }
 
 impl Running {
@@ -138,6 +150,8 @@ pub(super) struct Shader {
     heard: u64,
     /// The progress last told.
     told: (u64, u64),
+    /// When a picture was shown last.
+    shown_at: Option<Instant>,
 }
 
 impl Shader {
@@ -169,6 +183,7 @@ impl Shader {
             badges: Badges::default(),
             heard: 0,
             told: (0, 0),
+            shown_at: None,
         }
     }
 
@@ -230,6 +245,7 @@ impl Shader {
             Message::Staged { id, stage, divisor, session } => {
                 self.staged(id, stage, divisor, *session);
             }
+            Message::Grown { id, patch } => self.grown(id, *patch),
             Message::Ended { id, outcome } => self.ended(id, outcome),
             Message::Exported(outcome) => self.exported(outcome),
             Message::Quit => {}
@@ -258,19 +274,20 @@ impl Shader {
     /// Brings the picture in step with the wanted scene, with the least work.
     fn settle(&mut self, taken: Instant) {
         let Some(wanted) = self.wanted.clone() else { return };
-        let Err(reason) = self.reach_whole(&wanted, taken) else { return };
+        let Err(work) = self.reach_whole(&wanted, taken) else { return };
         self.reach_preview(&wanted, taken);
         if let Some(job) = &mut self.job {
             job.consider(&wanted);
+            self.mend_for(wanted, work);
         } else if !self.is_held(&wanted) {
-            self.begin(wanted, reason, taken);
+            self.begin(wanted, work, taken);
         }
     }
 
     /// Edits and shows the whole picture if that needs no ray; a trace is then for nothing.
-    fn reach_whole(&mut self, wanted: &Arc<Scene>, taken: Instant) -> Result<(), String> {
-        let whole = self.whole.as_mut().ok_or("the scene is new")?;
-        let report = whole.edit_without_rays(wanted).map_err(|work| work.reason().to_owned())?;
+    fn reach_whole(&mut self, wanted: &Arc<Scene>, taken: Instant) -> Result<(), Work> {
+        let new = || Work::Trace("the scene is new".into());
+        let report = self.whole.as_mut().ok_or_else(new)?.edit_without_rays(wanted)?;
         self.preview = None;
         self.hold = None;
         self.job.iter_mut().for_each(Running::drop_it);
@@ -311,9 +328,19 @@ impl Shader {
     }
 
     /// Sends a scene to the tracer, which is free.
-    fn begin(&mut self, scene: Arc<Scene>, reason: String, taken: Instant) {
+    fn begin(&mut self, scene: Arc<Scene>, work: Work, taken: Instant) {
         let known = self.whole.as_ref().map(compiled);
-        let trees = self.whole.as_mut().map(Session::take_trees);
+        let reason = work.reason().to_owned();
+        let mending = match (work, &mut self.whole) {
+            (Work::Regrow(plan), Some(whole)) => {
+                Some(Mending::new(whole, scene.clone(), plan, self.board.cursor()))
+            }
+            _ => None,
+        };
+        let trees = match mending {
+            Some(_) => None,
+            None => self.whole.as_mut().map(Session::take_trees),
+        };
         let (control, reuse) = (Arc::<Control>::default(), Arc::new(Mutex::new(trees)));
         self.jobs += 1;
         let id = self.jobs;
@@ -323,9 +350,14 @@ impl Shader {
             control: control.clone(),
             known,
             reuse: reuse.clone(),
+            regrow: mending.as_ref().map(|mending| mending.regrow.clone()),
         };
         self.traces.send(task).expect("the tracer lives as long as the shader");
-        self.job = Some(Running { id, scene, reason, control, reuse, taken, dropped: false });
+        let dropped = false;
+        self.job = Some(Running { id, scene, reason, control, reuse, taken, dropped, mending });
+        if self.mending().is_some() {
+            self.show();
+        }
     }
 
     /// Takes a picture before the whole one.
@@ -344,6 +376,9 @@ impl Shader {
         if Change::between(&scene, &wanted).moves_rays.is_some() {
             job.drop_it();
         }
+        if let Some(mending) = job.mending.as_mut().filter(|_| !job.dropped) {
+            mending.mark(Some(session.frame()));
+        }
         let scene = if reached { wanted } else { scene };
         self.preview = Some(Preview { session, stage, divisor, scene });
         self.show();
@@ -359,6 +394,7 @@ impl Shader {
             Outcome::Whole(session) if !job.dropped && self.hold.is_none() => {
                 self.take_whole(*session, job);
             }
+            Outcome::Regrown if !job.dropped && self.hold.is_none() => self.take_mended(job),
             Outcome::Cancelled if !job.dropped && self.hold.is_none() => self.put_on_hold(false),
             Outcome::Failed(text) if !job.dropped => {
                 self.board.tell(Event::Failed(text));
@@ -392,17 +428,13 @@ impl Shader {
     fn put_on_hold(&mut self, failed: bool) {
         let Some(scene) = self.wanted.clone() else { return };
         self.hold = Some(Hold { scene, failed });
-        if self.whole.is_some() && self.preview.take().is_some() {
+        let mended = self.job.as_ref().is_some_and(|job| job.mending.is_some());
+        if self.whole.is_some() && (self.preview.take().is_some() || mended) {
             self.show();
         }
         for export in std::mem::take(&mut self.waiting) {
             self.refuse(&export, UNTRACED);
         }
-    }
-
-    fn refuse(&self, export: &Export, cause: &str) {
-        let text = format!("{} was not written: {cause}", export.path.display());
-        self.board.tell(Event::Failed(text));
     }
 
     fn cancel(&mut self, target: Target) {
@@ -427,49 +459,6 @@ impl Shader {
         self.board.wake();
     }
 
-    fn export(&mut self, export: Export) {
-        match &self.wanted {
-            Some(_) => self.waiting.push(export),
-            None => self.refuse(&export, "no scene is open"),
-        }
-    }
-
-    /// Sends off the exports that need not wait any more.
-    fn send_waiting(&mut self) {
-        let Some(wanted) = self.wanted.clone() else { return };
-        for export in std::mem::take(&mut self.waiting) {
-            let Export { path, format, size } = export.clone();
-            let progress = Arc::<Progress>::default();
-            let what = format!("exporting {}", path.display());
-            let task = if size != wanted.picture.size {
-                let (scene, known) =
-                    (export::Task::resized(&wanted, &export), self.whole.as_ref().map(compiled));
-                let progress = progress.clone();
-                export::Task::Render { path, format, scene, known, progress }
-            } else if let Some(whole) = self.whole.as_ref().filter(|_| self.in_step()) {
-                let (film, scene) = (whole.film(), whole.shared_scene());
-                export::Task::Write { path, format, film, scene }
-            } else if self.hold.is_some() {
-                self.refuse(&export, UNTRACED);
-                continue;
-            } else {
-                self.waiting.push(export);
-                continue;
-            };
-            self.exporter.send(task).expect("the exporter lives as long as the shader");
-            self.exports.push_back(Pending { what, progress });
-        }
-    }
-
-    fn exported(&mut self, outcome: export::Outcome) {
-        self.exports.pop_front();
-        match outcome {
-            Ok(Some(path)) => self.board.tell(Event::Exported(path)),
-            Ok(None) => {}
-            Err(text) => self.board.tell(Event::Failed(text)),
-        }
-    }
-
     /// Lets jobs wait while edits come, and exports while a scene is traced. A first stage does not
     /// wait: the picture after it is what edits are seen on.
     fn pace(&mut self) {
@@ -492,6 +481,15 @@ impl Shader {
 
     /// Hands the newest picture to the window.
     fn show(&mut self) {
+        self.shown_at = Some(Instant::now());
+        if let Some((frame, scene, geometry)) = self.mending().map(|mending| {
+            (mending.frame(), mending.scene.clone(), mending.regrow.geometry.clone())
+        }) {
+            self.board.show(Shown { frame, scene, stage: Stage::Mending }, geometry);
+            self.badges.renew(Stage::Mending, &self.board);
+            self.report();
+            return self.board.wake();
+        }
         let (session, scene, stage) = match (&self.preview, &self.whole) {
             (Some(p), _) => (&p.session, p.scene.clone(), p.stage),
             (None, Some(whole)) => (whole, whole.shared_scene(), Stage::Whole),
@@ -512,10 +510,11 @@ impl Shader {
             last: self.last.clone(),
             in_step: self.in_step(),
             held: self.hold.is_some(),
+            pending: self.mending().map_or(0, Mending::pixels),
             bytes: self.whole.as_ref().or(shown).map_or(0, Session::kept_bytes),
             budget: self.options.memory,
         };
-        let trace = self.job.as_ref().filter(|job| !job.dropped).map(|job| Work {
+        let trace = self.job.as_ref().filter(|job| !job.dropped).map(|job| board::Work {
             what: format!("tracing: {}", job.reason),
             progress: job.control.progress.clone(),
             target: Target::Trace,
@@ -523,7 +522,7 @@ impl Shader {
         let export = || {
             let Pending { what, progress } = self.exports.front()?;
             let (what, progress) = (what.clone(), progress.clone());
-            Some(Work { what, progress, target: Target::Export })
+            Some(board::Work { what, progress, target: Target::Export })
         };
         self.board.report(status, trace.or_else(export), self.heard);
     }

@@ -14,6 +14,7 @@ use crate::geometry::Geometry;
 use crate::progress::{Cancelled, Progress};
 use crate::scene::Scene;
 use crate::scene::change::Change;
+use crate::session::regrow::Regrow;
 use crate::session::trace::{Kept, TraceError};
 use crate::session::{Options, Session, Start};
 
@@ -27,6 +28,8 @@ pub(super) struct Task {
     /// Trees whose memory the whole picture fills anew; what is left there afterwards was not
     /// touched.
     pub(super) reuse: Arc<Mutex<Option<Forest>>>,
+    /// What is grown instead of everything, after a coarse picture of everything.
+    pub(super) regrow: Option<Arc<Regrow>>,
 }
 
 /// A scene and what was compiled of its solids.
@@ -36,7 +39,11 @@ pub(super) struct Compiled(pub(super) Arc<Scene>, pub(super) Arc<Geometry>);
 impl Compiled {
     /// The geometry, if it is also that of `scene`.
     pub(super) fn of(&self, scene: &Scene) -> Option<Arc<Geometry>> {
-        (!Change::between(&self.0, scene).geometry).then(|| self.1.clone())
+        let change = Change::between(&self.0, scene);
+        (!change.geometry).then(|| match change.surfaces {
+            true => Arc::new(self.1.with_surfaces_of(scene)),
+            false => self.1.clone(),
+        })
     }
 }
 
@@ -54,6 +61,8 @@ pub(super) struct Control {
 pub(super) enum Outcome {
     /// With the whole picture.
     Whole(Box<Session>),
+    /// With all patches of the plan, which were sent.
+    Regrown,
     /// After its first stage, because another scene waits.
     Superseded,
     /// By a cancel.
@@ -67,9 +76,8 @@ pub(super) fn run(options: Options, tasks: Receiver<Task>, results: Sender<Messa
     let mut tracer =
         Tracer { options, pool: pool(options), results, latest: None, divisor: FIRST_DIVISOR };
     for task in tasks {
-        let outcome = match guarded(|| tracer.trace(&task)) {
-            Ok(Ok(Some(session))) => Outcome::Whole(Box::new(session)),
-            Ok(Ok(None)) => Outcome::Superseded,
+        let outcome = match guarded(|| tracer.work(&task)) {
+            Ok(Ok(outcome)) => outcome,
             Ok(Err(TraceError::Cancelled)) => Outcome::Cancelled,
             Ok(Err(error)) => Outcome::Failed(format!("the scene was not traced: {error}")),
             Err(text) => Outcome::Failed(format!("the scene was not traced: {text}")),
@@ -100,12 +108,33 @@ struct Tracer {
 }
 
 impl Tracer {
-    /// The whole picture, or `None` if another scene waits.
-    fn trace(&mut self, task: &Task) -> Result<Option<Session>, TraceError> {
-        let Task { id, scene, control, known: _, reuse } = task;
-        let geometry = self.geometry(task)?;
+    fn work(&mut self, task: &Task) -> Result<Outcome, TraceError> {
+        let outcome = self.trace(task)?;
+        let (Some(regrow), true) = (&task.regrow, outcome.is_none()) else {
+            return Ok(outcome.unwrap_or(Outcome::Superseded));
+        };
+        if task.control.superseded.load(Relaxed) {
+            return Ok(Outcome::Superseded);
+        }
+        let id = task.id;
+        regrow.run(&self.pool, &task.control.progress, &|patch| {
+            let _ = self.results.send(Message::Grown { id, patch: Box::new(patch) });
+        })?;
+        Ok(Outcome::Regrown)
+    }
+
+    /// The whole picture, or `None` if another scene waits, or only some of it is wanted.
+    fn trace(&mut self, task: &Task) -> Result<Option<Outcome>, TraceError> {
+        let Task { id, scene, control, known: _, reuse, regrow } = task;
+        let geometry = match regrow {
+            Some(regrow) => regrow.geometry.clone(),
+            None => self.geometry(task)?,
+        };
         let divisor = self.divisor.round() as u32;
         for (number, stage) in stages(scene, divisor).into_iter().enumerate() {
+            if regrow.as_ref().is_some_and(|regrow| !regrow.shows(stage)) {
+                return Ok(None);
+            }
             let whole = stage == Stage::Whole;
             let taken = || reuse.lock().unwrap_or_else(PoisonError::into_inner).take();
             let start = Start {
@@ -122,7 +151,7 @@ impl Tracer {
                 self.adapt(scene, stage, divisor, begun.elapsed().as_secs_f64());
             }
             if whole {
-                return Ok(Some(session));
+                return Ok(Some(Outcome::Whole(Box::new(session))));
             }
             let session = Box::new(session);
             let _ = self.results.send(Message::Staged { id: *id, stage, divisor, session });
@@ -150,11 +179,21 @@ impl Tracer {
         let (side, samples) = match stage {
             Stage::Coarse => (divisor, 1),
             Stage::OneSample => (1, 1),
-            Stage::Whole => (1, scene.trace.samples),
+            Stage::Whole | Stage::Mending => (1, scene.trace.samples),
         };
         let seconds = seconds / f64::from(samples);
         let fitting = f64::from(side) * (seconds / COARSE_SECONDS).sqrt();
         self.divisor = fitting.clamp(1.0, LARGEST_DIVISOR);
+    }
+}
+
+/// Fewer pixels than this are grown at once, without a coarse picture before them.
+const FEW_PIXELS: u64 = 1 << 12;
+
+impl Regrow {
+    /// Whether a stage is traced before it.
+    fn shows(&self, stage: Stage) -> bool {
+        stage == Stage::Coarse && self.plan.pixels() >= FEW_PIXELS
     }
 }
 
