@@ -24,7 +24,8 @@
 //! * **One rule of liveness**, [`follow`](scene::factor::FactorValues::follow): growing stops by it,
 //!   and shading gives the value 0 by it to a stored branch that would not grow today. Where growth
 //!   stopped, the trees keep a *frontier* record, and the terms a frontier mark; an edit that makes a
-//!   frontier live is the only edit of a colour or coefficient that costs rays.
+//!   frontier live is the only edit of a colour or coefficient that costs rays. Fresnel's weights are
+//!   geometry: a branch that they leave too faint is no parameter's to wake.
 //! * **Order.** Terms are numbered by their factors along the path, never by discovery; a pixel is
 //!   summed from +0 in that order, its planes first, then its single coefficients; vector lanes run
 //!   across pixels. Thread count, tile order, released memory and edits therefore change no bit.

@@ -17,7 +17,8 @@ pub fn exp2_nonpositive(p: f32) -> f32 {
     // default, without `round`, which is a call on CPUs below SSE4.1.
     const ROUND: f32 = 12_582_912.0;
     let clamped = if p > EXP2_FLUSH { p } else { EXP2_FLUSH };
-    let whole = (clamped + ROUND) - ROUND;
+    let shifted = clamped + ROUND;
+    let whole = shifted - ROUND;
     let f = clamped - whole;
     let mut q = 1.534_581_2e-4;
     q = q * f + 1.339_993_1e-3;
@@ -26,7 +27,11 @@ pub fn exp2_nonpositive(p: f32) -> f32 {
     q = q * f + 2.402_264_6e-1;
     q = q * f + 6.931_472e-1;
     q = q * f + 1.0;
-    let scale = f32::from_bits(((whole as i32 + 127) as u32) << 23);
+    // The low bits of `shifted` are the whole number: no conversion, whose saturation costs as much
+    // as the polynomial.
+    const BIAS: u32 = 127;
+    let exponent = shifted.to_bits().wrapping_sub(ROUND.to_bits()).wrapping_add(BIAS);
+    let scale = f32::from_bits(exponent << 23);
     if p >= EXP2_FLUSH { q * scale } else { 0.0 }
 }
 

@@ -10,7 +10,7 @@ use crate::forest::tree::Branch;
 use crate::geometry::Geometry;
 use crate::progress::Progress;
 use crate::scene::Scene;
-use crate::session::inspect::{InspectedLight, InspectedNode, Inspection, pixel};
+use crate::session::inspect::{Base, InspectedLight, InspectedNode, Inspection, pixel};
 
 #[derive(Debug, Args)]
 pub(crate) struct Inspect {
@@ -102,7 +102,12 @@ fn light_text(scene: &Scene, light: &InspectedLight) -> String {
         [] => String::new(),
         names => format!(", through {}", names.join(", ")),
     };
-    format!("light {name}: N·L {:.4}, R·V {:.4}{through}", light.n_dot_l, light.r_dot_v)
+    let base = match light.base {
+        Base::Mirrored => "R·V",
+        Base::Halfway => "N·H",
+        Base::Through => "T·L",
+    };
+    format!("light {name}: N·L {:.4}, {base} {:.4}{through}", light.n_dot_l, light.cosine)
 }
 
 fn end_text(branch: Branch) -> &'static str {
@@ -110,6 +115,7 @@ fn end_text(branch: Branch) -> &'static str {
         Branch::Missed => "→ background",
         Branch::Zero => "ends: its factor is zero",
         Branch::Weight => "ends: weight below trace.cutoff",
+        Branch::Faint => "ends: Fresnel leaves less than trace.cutoff",
         Branch::Depth => "ends: trace.depth",
         Branch::Grown | Branch::Absent => "",
     }

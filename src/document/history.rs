@@ -51,6 +51,13 @@ impl History {
         }
     }
 
+    /// Names the step of the gesture that lasts, until it goes on.
+    pub(super) fn name_step(&mut self, name: String) {
+        if self.gesture.is_some() {
+            self.states[self.at].name = OnceLock::from(name);
+        }
+    }
+
     /// Ends a gesture; one that changed nothing leaves no step and takes nothing away from redo.
     pub(super) fn end_gesture(&mut self) {
         let Some(undone) = self.gesture.take() else { return };
@@ -140,6 +147,7 @@ impl Visit for Bits {
             Slot::Whole(..)
             | Slot::Pair(..)
             | Slot::Flag(_)
+            | Slot::Choice(_)
             | Slot::Material(_)
             | Slot::Mesh { .. } => {}
         }

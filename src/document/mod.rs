@@ -14,6 +14,7 @@ mod step;
 mod tests;
 #[cfg(test)]
 mod tests_patch;
+pub mod things;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -115,6 +116,12 @@ impl Document {
     pub fn change(&mut self, scene: Scene) {
         self.history.change(scene);
         self.refresh();
+    }
+
+    /// Gives the step that [`Document::change`] just made a name of its own, where what differs does
+    /// not say what was meant.
+    pub fn name_step(&mut self, name: String) {
+        self.history.name_step(name);
     }
 
     /// Ends a gesture: the next change begins a new step.

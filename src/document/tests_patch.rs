@@ -196,6 +196,7 @@ fn random_value(parameter: &Parameter, scene: &Scene, random: &mut Random) -> St
             1 => "[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0.5, 2, 0], [0, 1, 0]]".to_owned(),
             _ => parameter.value.replace("[1", "[3"),
         },
+        Kind::Choice(names) => names[random.below(names.len())].to_owned(),
         Kind::Material => scene.materials[random.below(scene.materials.len())].name.clone(),
         Kind::File => parameter.value.clone(),
     }

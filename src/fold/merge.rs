@@ -25,9 +25,6 @@ impl TransportTile {
         tile.frontier.terms =
             union(&self.frontier.terms, &old.frontier, &part.frontier.terms, &new.frontier);
         tile.frontier.starts.push(0);
-        if self.highlights.is_some() && part.highlights.is_some() {
-            tile.highlights = Some(Highlights::default());
-        }
         let mut cursors = sources.map(|source| source.cursor(&tile));
         for block in 0..TILE_BLOCKS {
             let [old, new] = &mut cursors;
@@ -38,8 +35,38 @@ impl TransportTile {
                 old.copy(&mut tile);
             }
         }
+        tile.highlights = self.merged_highlights(part, blocks, &tile);
         tile.shrink();
         tile
+    }
+
+    /// The highlight lists of `into`, this tile with the blocks of `part`, if both have theirs.
+    fn merged_highlights(
+        &self,
+        part: &TransportTile,
+        blocks: Blocks,
+        into: &TransportTile,
+    ) -> Option<Highlights> {
+        let (old, new) = (self.highlights.as_ref()?, part.highlights.as_ref()?);
+        let new_blocks: Vec<usize> =
+            (0..TILE_BLOCKS).filter(|block| blocks >> block & 1 != 0).collect();
+        let mut pieces = Vec::new();
+        for mut piece in old.pieces() {
+            let block = piece.list.block(&self.starts);
+            if blocks >> block & 1 == 0 {
+                piece.list = piece.list.moved(self.starts[block], into.starts[block]);
+                pieces.push((block, piece));
+            }
+        }
+        for mut piece in new.pieces() {
+            let own = piece.list.block(&part.starts);
+            let block = new_blocks[own];
+            piece.list = piece.list.moved(part.starts[own], into.starts[block]);
+            pieces.push((block, piece));
+        }
+        // A block's lists are all of one source, and stay in their order.
+        pieces.sort_by_key(|(block, piece)| (piece.key(), *block));
+        Some(Highlights::of_pieces(pieces.iter().map(|(_, piece)| piece)))
     }
 
     /// Bytes of the rows of the blocks of a set.
@@ -54,17 +81,13 @@ impl TransportTile {
     }
 
     fn shrink(&mut self) {
-        let TransportTile { terms, starts, entries, planes, singles, highlights, frontier } = self;
+        let TransportTile { terms, starts, entries, planes, singles, highlights: _, frontier } =
+            self;
         terms.shrink_to_fit();
         starts.shrink_to_fit();
         entries.shrink_to_fit();
         planes.shrink_to_fit();
         singles.shrink_to_fit();
-        if let Some(Highlights { lists, counts, log2_cosines }) = highlights {
-            lists.shrink_to_fit();
-            counts.shrink_to_fit();
-            log2_cosines.shrink_to_fit();
-        }
         let Frontier { terms, starts, marks } = frontier;
         terms.shrink_to_fit();
         starts.shrink_to_fit();
@@ -112,9 +135,6 @@ impl<'a> Source<'a> {
             terms: places(&self.tile.terms, &self.terms, &into.terms),
             frontier: places(&self.tile.frontier.terms, &self.frontier, &into.frontier.terms),
             block: 0,
-            list: 0,
-            count: 0,
-            sample: 0,
         }
     }
 }
@@ -139,17 +159,12 @@ struct Cursor<'a> {
     terms: Vec<u32>,
     frontier: Vec<u32>,
     block: usize,
-    /// Of the block's highlights.
-    list: usize,
-    count: usize,
-    sample: usize,
 }
 
 impl Cursor<'_> {
     /// Appends the next block to `into`.
     fn copy(&mut self, into: &mut TransportTile) {
         let rows = self.tile.block(self.block);
-        let to = into.end();
         into.entries.extend(rows.entries.iter().map(|&e| self.terms[e as usize]));
         into.planes.extend_from_slice(rows.planes);
         into.singles.extend(rows.singles.iter().map(|single| {
@@ -165,40 +180,23 @@ impl Cursor<'_> {
             .map(|mark| FrontierMark { entry: self.frontier[mark.entry as usize], ..*mark });
         into.frontier.marks.extend(marks);
         into.frontier.starts.push(into.frontier.marks.len() as u32);
-        let from = self.tile.starts[self.block];
-        let [lists, counts, samples] = self.pass();
-        if let (Some(own), Some(highlights)) = (&self.tile.highlights, &mut into.highlights) {
-            let moved = own.lists[lists].iter().map(|list| list.moved(from, to));
-            highlights.lists.extend(moved);
-            highlights.counts.extend_from_slice(&own.counts[counts]);
-            highlights.log2_cosines.extend_from_slice(&own.log2_cosines[samples]);
-        }
+        self.pass();
     }
 
-    /// Passes over the next block; the ranges of its highlights' lists, counts and samples.
-    fn pass(&mut self) -> [std::ops::Range<usize>; 3] {
-        let end = self.tile.starts[self.block + 1];
+    /// Passes over the next block.
+    fn pass(&mut self) {
         self.block += 1;
-        let from = [self.list, self.count, self.sample];
-        if let Some(own) = &self.tile.highlights {
-            while own.lists.get(self.list).is_some_and(|list| list.is_before(end)) {
-                let lanes = own.lists[self.list].mask.count_ones() as usize;
-                let counts = &own.counts[self.count..self.count + lanes];
-                self.sample += counts.iter().map(|&count| usize::from(count)).sum::<usize>();
-                self.count += lanes;
-                self.list += 1;
-            }
-        }
-        [from[0]..self.list, from[1]..self.count, from[2]..self.sample]
     }
 }
 
 impl HighlightList {
-    /// Whether its term is stored before `end`.
-    fn is_before(&self, end: BlockStart) -> bool {
+    /// The block that its term is stored in, of blocks that begin at `starts`.
+    fn block(&self, starts: &[BlockStart]) -> usize {
+        let at = self.at & !HighlightList::SINGLE;
+        let ends = &starts[1..];
         match self.at & HighlightList::SINGLE {
-            0 => self.at < end.plane,
-            _ => self.at & !HighlightList::SINGLE < end.single,
+            0 => ends.partition_point(|end| end.plane <= at),
+            _ => ends.partition_point(|end| end.single <= at),
         }
     }
 

@@ -2,6 +2,7 @@
 //! of parameters.
 
 pub mod highlight;
+mod lists;
 pub mod merge;
 #[cfg(test)]
 mod tests;
@@ -9,9 +10,9 @@ pub mod transport;
 pub mod trie;
 
 use highlight::HighlightPower;
+use lists::{HighlightLists, HighlightSample};
 use transport::{
-    BlockStart, Frontier, FrontierMark, HighlightList, Highlights, Plane, SPARSE_LANES, Single,
-    TransportTile,
+    BlockStart, Frontier, FrontierMark, HighlightList, Plane, SPARSE_LANES, Single, TransportTile,
 };
 use trie::{Marks, ROOT, Trie};
 
@@ -19,6 +20,7 @@ use crate::color::Rgb;
 use crate::film::layout::LANES;
 use crate::forest::tree::{BLOCKED, Branch, LightHit, Node, Reader};
 use crate::scene::factor::{Factor, Kind};
+use crate::scene::model::Peak;
 
 /// Folds the blocks of one tile after another; one per thread, its memory reused.
 ///
@@ -30,7 +32,8 @@ pub struct Folder {
     trie: Trie,
     memo: Vec<Lookup>,
     position: usize,
-    stack: Vec<u32>,
+    /// Paths still to be followed, with their geometric weights.
+    stack: Vec<(u32, f32)>,
     /// Per trie id the stamp of the block that last used it and its slot there.
     slots: Vec<(u32, u32)>,
     stamp: u32,
@@ -50,6 +53,7 @@ pub struct Folder {
     filters: Vec<u16>,
     order: Vec<u32>,
     sorted: Vec<HighlightSample>,
+    lists: HighlightLists,
     power: HighlightPower,
 }
 
@@ -62,15 +66,6 @@ struct Lookup {
     /// The slot of a term, if `stamp` is the present block's.
     slot: u32,
     stamp: u32,
-}
-
-/// One sample's highlight, before it is sorted into its list.
-#[derive(Clone, Copy, Default)]
-struct HighlightSample {
-    slot: u32,
-    material: u16,
-    lane: u16,
-    one_minus_cosine: f32,
 }
 
 /// A term of the frontier in a block, by its id in the tile's own trie.
@@ -140,7 +135,7 @@ impl Folder {
                 if reader.sample() {
                     self.tree(reader, lane, names);
                 } else {
-                    self.background(ROOT, lane);
+                    self.background(ROOT, lane, 1.0);
                 }
             }
         }
@@ -170,26 +165,28 @@ impl Folder {
     /// Adds the terms of one tree to a lane.
     #[inline(always)]
     fn tree(&mut self, reader: &mut Reader, lane: usize, names: &Names) {
-        self.stack.push(ROOT);
-        while let Some(path) = self.stack.pop() {
+        self.stack.push((ROOT, 1.0));
+        while let Some((path, weight)) = self.stack.pop() {
             let node = reader.node();
-            self.add(path, Factor::new(Kind::Ambient, node.material, node.slot), lane, 1.0);
+            let ambient = Factor::new(Kind::Ambient, node.material, node.slot);
+            self.add(path, ambient, lane, weight);
             for _ in 0..node.lights {
                 let (hit, crossed) = reader.light();
-                self.light(path, node, (hit, crossed), lane, names);
+                self.light((path, weight), node, (hit, crossed), lane, names);
             }
+            let [mirrored, passed] = node.weights().map(|w| w * weight);
             let mirror = if node.ends.total() { Kind::TotalReflect } else { Kind::Reflect };
             let transmit = Factor::new(Kind::Transmit, node.material, 0);
-            self.branch(path, node.ends.transmitted(), transmit, lane);
+            self.branch((path, passed), node.ends.transmitted(), transmit, lane);
             let reflect = Factor::new(mirror, node.material, 0);
-            self.branch(path, node.ends.reflected(), reflect, lane);
+            self.branch((path, mirrored), node.ends.reflected(), reflect, lane);
         }
     }
 
     #[inline(always)]
     fn light(
         &mut self,
-        path: u32,
+        (path, weight): (u32, f32),
         node: &Node,
         (hit, crossed): (&LightHit, &[u32]),
         lane: usize,
@@ -201,7 +198,7 @@ impl Folder {
             self.edge(witness, lane, Marks::WITNESS);
             return;
         }
-        if hit.n_dot_l <= 0.0 {
+        if hit.n_dot_l <= 0.0 && !hit.is_behind() {
             return;
         }
         let light = names.lights[hit.light as usize];
@@ -209,16 +206,21 @@ impl Folder {
         if !crossed.is_empty() {
             arriving = self.filtered(arriving, crossed, names);
         }
-        let diffuse = Factor::new(Kind::Diffuse, node.material, node.slot);
-        self.add(arriving, diffuse, lane, hit.n_dot_l);
-        if hit.one_minus_r_dot_v < 1.0 {
-            let specular = Factor::new(Kind::Specular, node.material, node.slot);
-            let slot = self.term(arriving, specular);
+        let highlight = if hit.is_behind() {
+            Factor::new(Kind::Through, node.material, 0)
+        } else {
+            let diffuse = Factor::new(Kind::Diffuse, node.material, node.slot);
+            self.add(arriving, diffuse, lane, hit.n_dot_l * weight);
+            Factor::new(Kind::Specular, node.material, node.slot)
+        };
+        if hit.weight > 0.0 {
+            let slot = self.term(arriving, highlight);
             self.highlights.push(HighlightSample {
                 slot,
                 material: node.material,
                 lane: lane as u16,
-                one_minus_cosine: hit.one_minus_r_dot_v,
+                angle: hit.angle,
+                weight: hit.weight * weight,
             });
         }
     }
@@ -254,21 +256,22 @@ impl Folder {
     }
 
     #[inline(always)]
-    fn branch(&mut self, path: u32, branch: Branch, factor: Factor, lane: usize) {
-        if branch == Branch::Absent {
+    fn branch(&mut self, (path, weight): (u32, f32), branch: Branch, factor: Factor, lane: usize) {
+        // No parameter brings a faint branch to life: it is no term of the frontier.
+        if matches!(branch, Branch::Absent | Branch::Faint) {
             return;
         }
         let child = self.find(path, factor);
         match branch {
-            Branch::Grown => self.stack.push(child),
-            Branch::Missed => self.background(child, lane),
+            Branch::Grown => self.stack.push((child, weight)),
+            Branch::Missed => self.background(child, lane, weight),
             _ => self.edge(child, lane, Marks::FRONTIER),
         }
     }
 
     #[inline(always)]
-    fn background(&mut self, path: u32, lane: usize) {
-        self.add(path, Factor::new(Kind::Background, 0, 0), lane, 1.0);
+    fn background(&mut self, path: u32, lane: usize, weight: f32) {
+        self.add(path, Factor::new(Kind::Background, 0, 0), lane, weight);
     }
 
     /// The id of `parent · factor`, first guessed from the tree before.
@@ -346,13 +349,12 @@ impl Folder {
 
     /// Ends a tile: puts its terms in canonical order and computes its highlights.
     ///
-    /// `weight` is that of one sample; `shininess` has one exponent per material.
-    pub fn finish_tile(&mut self, weight: f32, shininess: &[Option<f32>]) -> Folded<'_> {
+    /// `weight` is that of one sample; `peaks` has that of every material.
+    pub fn finish_tile(&mut self, weight: f32, peaks: &[Option<Peak>]) -> Folded<'_> {
         let ranks = self.trie.canonical_ranks();
         let mut tile = TransportTile::default();
         let local = self.dictionary(&ranks, &mut tile);
-        let mut highlights = Highlights::default();
-        highlights.log2_cosines.reserve_exact(self.highlights.len());
+        self.lists.clear();
         tile.starts.reserve_exact(self.starts.len());
         tile.starts.push(BlockStart::default());
         let lanes = self.masks.iter().map(|m| m.count_ones());
@@ -374,12 +376,11 @@ impl Folder {
                 plane: tile.planes.len() as u32,
                 single: tile.singles.len() as u32,
             });
-            self.sort_highlights(block, &mut highlights);
+            self.sort_highlights(block);
         }
-        highlights.lists.shrink_to_fit();
-        highlights.counts.shrink_to_fit();
-        self.power.take_logarithms(&mut highlights.log2_cosines);
-        self.power.fold(&mut tile, &highlights, shininess, weight);
+        let mut highlights = self.lists.group();
+        self.power.take_logarithms(&mut highlights, peaks);
+        self.power.fold(&mut tile, &highlights, peaks, weight);
         tile.highlights = Some(highlights);
         Folded { trie: &self.trie, tile }
     }
@@ -435,9 +436,8 @@ impl Folder {
         local
     }
 
-    /// Sorts a block's highlight samples into lists, by slot, then lane, then sample. Stores
-    /// 1 − cos β, yet to be turned into logarithms.
-    fn sort_highlights(&mut self, block: usize, highlights: &mut Highlights) {
+    /// Sorts a block's highlight samples into lists, by slot, then lane, then sample.
+    fn sort_highlights(&mut self, block: usize) {
         let range = self.highlight_starts[block]..self.highlight_starts[block + 1];
         let samples = &self.highlights[range.start as usize..range.end as usize];
         let first = self.starts[block];
@@ -459,14 +459,7 @@ impl Folder {
             *at += 1;
         }
         for list in self.sorted.chunk_by(|a, b| a.slot == b.slot) {
-            let mut mask = 0u16;
-            for lane in list.chunk_by(|a, b| a.lane == b.lane) {
-                mask |= 1 << lane[0].lane;
-                highlights.counts.push(lane.len() as u16);
-            }
-            let at = self.places[list[0].slot as usize];
-            highlights.lists.push(HighlightList { at, material: list[0].material, mask });
-            highlights.log2_cosines.extend(list.iter().map(|s| s.one_minus_cosine));
+            self.lists.add(self.places[list[0].slot as usize], list);
         }
     }
 }

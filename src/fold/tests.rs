@@ -2,17 +2,23 @@
 
 use super::*;
 use crate::forest::grow::Sink;
-use crate::forest::tree::{Ends, TileTrees};
+use crate::forest::tree::{Ends, NO_FRESNEL, TileTrees};
+use crate::scene::model::Measure;
 
 const ALL: [bool; LANES] = [true; LANES];
 
 fn node(material: u16, reflected: Branch) -> Node {
     let ends = Ends::new(reflected, Branch::Zero, false);
-    Node { t: 1.0, primitive: 0, material, lights: 0, slot: 0, ends }
+    Node { t: 1.0, primitive: 0, material, lights: 0, slot: 0, ends, fresnel: NO_FRESNEL }
 }
 
-fn lit(light: u16, n_dot_l: f32, one_minus_r_dot_v: f32, crossed: u16) -> LightHit {
-    LightHit { light, crossed, n_dot_l, one_minus_r_dot_v }
+/// The peak of Phong's exponent.
+fn power(exponent: f32) -> Option<Peak> {
+    Some(Peak { exponent, scale: 1.0, measure: Measure::Cosine })
+}
+
+fn lit(light: u16, n_dot_l: f32, angle: f32, crossed: u16) -> LightHit {
+    LightHit { light, crossed, n_dot_l, angle, weight: 1.0 }
 }
 
 /// A block whose lane `i` has two samples: a mirror that sees a matte surface through material 2 if
@@ -45,8 +51,7 @@ fn folded(trees: &TileTrees) -> (Trie, TransportTile) {
     let mut folder = Folder::default();
     folder.begin_tile();
     folder.block(&mut trees.read(0), ALL, 2, &names());
-    let shininess = [Some(8.0), Some(2.0), Some(1.0)];
-    let Folded { trie, tile } = folder.finish_tile(0.5, &shininess);
+    let Folded { trie, tile } = folder.finish_tile(0.5, &[8.0, 2.0, 1.0].map(power));
     (trie.clone(), tile)
 }
 
@@ -139,10 +144,10 @@ fn a_new_exponent_gives_what_a_fresh_fold_gives() {
     let mut folder = Folder::default();
     folder.begin_tile();
     folder.block(&mut trees.read(0), ALL, 2, &names());
-    let exponents = [Some(8.0), Some(31.0), Some(1.0)];
-    let fresh = folder.finish_tile(0.5, &exponents).tile;
+    let fresh = folder.finish_tile(0.5, &[8.0, 31.0, 1.0].map(power)).tile;
     assert_ne!(kept, fresh);
-    let any = HighlightPower::default().refold(&mut kept, &[None, Some(31.0), None], 0.5);
-    assert!(any);
+    let peaks = [None, power(31.0), None];
+    assert!(HighlightPower::default().refold(&mut kept, &peaks, 0.5), "coefficients changed");
     assert_eq!(kept, fresh);
+    assert!(!HighlightPower::default().refold(&mut kept, &peaks, 0.5), "nothing more changes");
 }

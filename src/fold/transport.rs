@@ -156,25 +156,66 @@ pub struct Block<'a> {
 }
 
 /// The angles behind every highlight coefficient of a tile.
+///
+/// # Invariants ([`Transport::validate`])
+/// Groups rise by material, and of each the one without weights comes first; the arrays hold the
+/// groups one after another.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Highlights {
-    /// In the order in which the blocks' terms were found.
+    /// The lists of each material.
+    pub groups: Vec<HighlightGroup>,
+    /// Per group in the order in which the blocks' terms were found.
     pub lists: Vec<HighlightList>,
     /// Per list and lane of its mask the number of samples.
     pub counts: Vec<u16>,
-    /// log2 cos β of every sample with a highlight, list by list, lane by lane, in sample order.
-    pub log2_cosines: Vec<f32>,
+    /// l of every sample with a highlight, that is log2 cos β or −tan² α · log2 e: list by list, and
+    /// in it lane by lane, in sample order; in a *full* list sample by sample, in lane order.
+    pub logarithms: Vec<f32>,
+    /// What multiplies each power, for the groups that have weights.
+    pub weights: Vec<f32>,
 }
 
-/// The samples behind the coefficients of one highlight term in one block.
+/// Lists of one material: how many of each array's elements are theirs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HighlightGroup {
+    /// The material whose peak applies.
+    pub material: u16,
+    /// Whether the samples have weights; otherwise each is 1.
+    pub weighted: bool,
+    /// Of `lists`.
+    pub lists: u32,
+    /// Of `counts`.
+    pub lanes: u32,
+    /// Of `logarithms`, and, if weighted, of `weights`.
+    pub samples: u32,
+}
+
+/// The arrays of one [`HighlightGroup`].
+#[derive(Clone, Copy, Debug)]
+pub struct HighlightPart<'a> {
+    /// Its material.
+    pub material: u16,
+    /// Its lists.
+    pub lists: &'a [HighlightList],
+    /// Per list and lane the number of samples.
+    pub counts: &'a [u16],
+    /// l of every sample.
+    pub logarithms: &'a [f32],
+    /// What multiplies each power; empty if every weight is 1.
+    pub weights: &'a [f32],
+}
+
+/// The samples behind the coefficients of one highlight term in one block: 12 bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HighlightList {
     /// Index into `planes`, or, with [`HighlightList::SINGLE`] added, of the first of `singles`.
     pub at: u32,
-    /// The material whose exponent applies.
-    pub material: u16,
     /// Bit i is set if lane i has samples.
     pub mask: u16,
+    /// Samples of every lane, if all 16 lanes have equally many: a *full* list. Otherwise 0.
+    pub full: u16,
+    /// The greatest l of its samples: where its power is flushed to 0, all of them are.
+    pub peak: f32,
 }
 
 impl HighlightList {
@@ -200,8 +241,8 @@ impl Transport {
             false => factor,
         });
         for highlights in self.tiles.iter_mut().filter_map(|tile| tile.highlights.as_mut()) {
-            for list in &mut highlights.lists {
-                list.material = index[list.material as usize];
+            for group in &mut highlights.groups {
+                group.material = index[group.material as usize];
             }
         }
     }
@@ -269,23 +310,73 @@ impl TransportTile {
             assert!(all.all(f32::is_finite), "a coefficient is not finite");
         }
         self.frontier.validate(terms);
-        if let Some(Highlights { lists, counts, log2_cosines }) = &self.highlights {
-            let lanes: u32 = lists.iter().map(|l| l.mask.count_ones()).sum();
-            assert_eq!(lanes as usize, counts.len(), "a count per lane of every highlight");
-            assert!(counts.iter().all(|&c| c > 0), "a lane without samples");
-            let samples: usize = counts.iter().map(|&c| usize::from(c)).sum();
-            assert_eq!(samples, log2_cosines.len(), "highlight samples");
-            assert!(log2_cosines.iter().all(|&l| l <= 0.0), "a cosine above 1");
+        if let Some(highlights) = &self.highlights {
+            highlights.validate();
         }
     }
 }
 
 impl Highlights {
+    /// The arrays of each group.
+    pub fn parts(&self) -> impl Iterator<Item = HighlightPart<'_>> {
+        let Highlights { groups, lists, counts, logarithms, weights } = self;
+        let (mut list, mut lane, mut sample, mut weight) = (0, 0, 0, 0);
+        groups.iter().map(move |group| {
+            let weights_here = if group.weighted { group.samples } else { 0 };
+            HighlightPart {
+                material: group.material,
+                lists: &lists[advance(&mut list, group.lists)],
+                counts: &counts[advance(&mut lane, group.lanes)],
+                logarithms: &logarithms[advance(&mut sample, group.samples)],
+                weights: &weights[advance(&mut weight, weights_here)],
+            }
+        })
+    }
+
     /// Allocated bytes.
     pub fn bytes(&self) -> usize {
-        let Highlights { lists, counts, log2_cosines } = self;
-        lists.capacity() * size_of::<HighlightList>()
+        let Highlights { groups, lists, counts, logarithms, weights } = self;
+        groups.capacity() * size_of::<HighlightGroup>()
+            + lists.capacity() * size_of::<HighlightList>()
             + counts.capacity() * 2
-            + log2_cosines.capacity() * 4
+            + (logarithms.capacity() + weights.capacity()) * 4
     }
+
+    fn validate(&self) {
+        let Highlights { groups, lists, counts, logarithms, weights } = self;
+        let sum = |of: &dyn Fn(&HighlightGroup) -> u32| groups.iter().map(of).sum::<u32>() as usize;
+        assert_eq!(sum(&|g| g.lists), lists.len(), "lists of groups");
+        assert_eq!(sum(&|g| g.lanes), counts.len(), "lanes of groups");
+        assert_eq!(sum(&|g| g.samples), logarithms.len(), "samples of groups");
+        let weighted = sum(&|g| if g.weighted { g.samples } else { 0 });
+        assert_eq!(weighted, weights.len(), "weights of groups");
+        let key = |g: &HighlightGroup| (g.material, g.weighted);
+        assert!(groups.is_sorted_by(|a, b| key(a) < key(b)), "groups out of order");
+        for HighlightPart { material: _, lists, counts, logarithms, weights: _ } in self.parts() {
+            let lanes: u32 = lists.iter().map(|l| l.mask.count_ones()).sum();
+            assert_eq!(lanes as usize, counts.len(), "a count per lane of every highlight");
+            assert!(counts.iter().all(|&c| c > 0), "a lane without samples");
+            let samples: usize = counts.iter().map(|&c| usize::from(c)).sum();
+            assert_eq!(samples, logarithms.len(), "highlight samples");
+            let (mut lane, mut sample) = (0, 0);
+            for list in lists {
+                let own = &counts[advance(&mut lane, list.mask.count_ones())];
+                let full = list.full == 0 || own == [list.full; LANES];
+                assert!(full, "a list that is not full");
+                let count = own.iter().map(|&c| u32::from(c)).sum();
+                let logarithms = logarithms[advance(&mut sample, count)].iter().copied();
+                let peak = logarithms.fold(f32::NEG_INFINITY, f32::max);
+                assert_eq!(list.peak, peak, "the peak of a list");
+            }
+        }
+        assert!(logarithms.iter().all(|&l| l <= 0.0), "a cosine above 1");
+        assert!(weights.iter().all(|&w| w >= 0.0 && w.is_finite()), "an odd weight");
+    }
+}
+
+/// The next `count` indices.
+fn advance(at: &mut usize, count: u32) -> std::ops::Range<usize> {
+    let from = *at;
+    *at += count as usize;
+    from..*at
 }

@@ -1,4 +1,4 @@
-//! The ray that leaves the eye through a point of the picture.
+//! The ray that leaves the eye through a point of the picture, and the point at which something is seen.
 
 use glam::DVec3;
 
@@ -16,6 +16,15 @@ pub struct View {
     down: DVec3,
     parallel: bool,
     size: [f64; 2],
+}
+
+/// Where a point of the world is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// Pixels from the upper left corner of the picture; beyond its edges for what lies beside it.
+    pub at: [f64; 2],
+    /// Distance from the eye's plane along the view, world units, > 0.
+    pub depth: f64,
 }
 
 impl View {
@@ -48,6 +57,38 @@ impl View {
             Ray { origin: self.eye, direction: (self.forward + offset).normalize() }
         }
     }
+
+    /// Where a point of the world is seen; `None` if it is not in front of the eye.
+    ///
+    /// [`View::point`] undoes it, and the ray through that pixel meets the point, both to some ulps of
+    /// the distances in play.
+    pub fn project(&self, point: DVec3) -> Option<Seen> {
+        let arm = point - self.eye;
+        let depth = arm.dot(self.forward);
+        let offset = if self.parallel { arm } else { arm / depth };
+        let share = |axis: DVec3| offset.dot(axis) / axis.length_squared() + 0.5;
+        let at = [share(self.across) * self.size[0], share(self.down) * self.size[1]];
+        (depth > 0.0 && at.iter().all(|x| x.is_finite())).then_some(Seen { at, depth })
+    }
+
+    /// The point of the world that is seen there.
+    pub fn point(&self, seen: Seen) -> DVec3 {
+        let Seen { at: [x, y], depth } = seen;
+        let (u, v) = (x / self.size[0] - 0.5, y / self.size[1] - 0.5);
+        let offset = self.across * u + self.down * v;
+        let scale = if self.parallel { 1.0 } else { depth };
+        self.eye + self.forward * depth + offset * scale
+    }
+
+    /// What the height of the picture covers at a depth, world units.
+    pub fn height_at(&self, depth: f64) -> f64 {
+        self.down.length() * if self.parallel { 1.0 } else { depth }
+    }
+
+    /// Directions of length 1 in world space: right and down in the picture, and into it.
+    pub fn axes(&self) -> [DVec3; 3] {
+        [self.across.normalize(), self.down.normalize(), self.forward]
+    }
 }
 
 #[cfg(test)]
@@ -74,5 +115,63 @@ mod tests {
         let corner = view.ray(0.0, 0.0);
         assert_eq!(corner.direction, DVec3::Y);
         assert!((corner.origin - DVec3::new(-4.0, -8.0, 3.0)).length() < 1e-14);
+    }
+
+    /// A view whose axes are none of the world's.
+    fn oblique(lens: Lens) -> View {
+        let eye = DVec3::new(3.0, -8.0, 5.0);
+        let target = DVec3::new(-1.0, 0.5, 1.0);
+        View::new(&Camera { eye, target, up: DVec3::new(0.1, 0.2, 1.0), lens }, [640, 360])
+    }
+
+    /// How far a ray passes from a point.
+    fn miss(ray: &Ray, point: DVec3) -> f64 {
+        (point - ray.origin).cross(ray.direction).length()
+    }
+
+    #[test]
+    fn a_point_is_seen_where_its_ray_leaves_the_picture() {
+        for lens in [Lens::Perspective { fov_degrees: 50.0 }, Lens::Parallel { height: 7.0 }] {
+            let view = oblique(lens);
+            for seen in [[320.0, 180.0], [0.0, 0.0], [640.0, 360.0], [17.25, 301.5], [-90.0, 400.0]]
+                .into_iter()
+                .flat_map(|at| [1e-3, 1.0, 9.0, 1e4].map(|depth| Seen { at, depth }))
+            {
+                let point = view.point(seen);
+                let back = view.project(point).expect("it is in front of the eye");
+                let wrong = (0..2).map(|i| (back.at[i] - seen.at[i]).abs()).fold(0.0, f64::max);
+                assert!(wrong < 1e-6 && (back.depth / seen.depth - 1.0).abs() < 1e-10, "{back:?}");
+                let ray = view.ray(seen.at[0], seen.at[1]);
+                assert!(miss(&ray, point) < 1e-11 * seen.depth.max(10.0), "{seen:?}");
+                let beside = view.ray(seen.at[0] + 1.0, seen.at[1]);
+                assert!(miss(&beside, point) > 1e-7, "another pixel's ray misses it");
+            }
+        }
+    }
+
+    #[test]
+    fn the_target_is_in_the_middle_and_nothing_is_seen_behind_the_eye() {
+        for lens in [Lens::Perspective { fov_degrees: 50.0 }, Lens::Parallel { height: 7.0 }] {
+            let view = oblique(lens);
+            let (eye, target) = (DVec3::new(3.0, -8.0, 5.0), DVec3::new(-1.0, 0.5, 1.0));
+            let Seen { at: [x, y], depth } = view.project(target).unwrap();
+            assert!((x - 320.0).abs() < 1e-9 && (y - 180.0).abs() < 1e-9, "{x} {y}");
+            assert!((depth - eye.distance(target)).abs() < 1e-12);
+            assert_eq!(view.project(eye), None);
+            assert_eq!(view.project(eye * 2.0 - target), None);
+        }
+    }
+
+    #[test]
+    fn the_height_at_a_depth_reaches_from_edge_to_edge() {
+        for lens in [Lens::Perspective { fov_degrees: 50.0 }, Lens::Parallel { height: 7.0 }] {
+            let view = oblique(lens);
+            let edge = |y: f64| view.point(Seen { at: [100.0, y], depth: 3.0 });
+            let height = edge(360.0) - edge(0.0);
+            assert!((height.length() - view.height_at(3.0)).abs() < 1e-12);
+            let [right, down, forward] = view.axes();
+            assert!((height.normalize() - down).length() < 1e-12);
+            assert!((right.cross(forward) + down).length() < 1e-12, "right-handed");
+        }
     }
 }

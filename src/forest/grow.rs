@@ -7,13 +7,16 @@ use glam::DVec3;
 
 use super::camera::View;
 use super::kept::{Met, Recall, Recalled};
+use super::lobe::{self, Lit, Lobe};
 use super::media::{Crossing, Media};
 use super::sampling;
-use super::tree::{BLOCKED, Branch, Ends, LightHit, Node};
+use super::surface::Surface;
+use super::tree::{BLOCKED, Branch, Ends, LightHit, NO_FRESNEL, Node, weights};
 use crate::film::layout::{LANES, Layout, Place};
 use crate::geometry::{Geometry, Hit, Interaction, Leaving, Ray, Stack};
 use crate::progress::{Cancelled, Progress};
 use crate::scene::factor::{End, Factor, FactorValues, Kind, PathWeight};
+use crate::scene::model::Model;
 use crate::scene::{LightPlace, Material, Scene};
 
 /// What receives the trees: storage, or nothing, so that tracing with and without keeping is the
@@ -137,6 +140,9 @@ pub struct Grower<'a> {
     bends: Vec<bool>,
     /// Per solid.
     iors: Vec<f64>,
+    models: Vec<Model>,
+    /// Per material, whether Fresnel weighs its branches.
+    weighing: Vec<bool>,
     /// Per solid the index of refraction with which the kept trees were grown.
     iors_before: Vec<f64>,
     view: View,
@@ -167,6 +173,8 @@ struct Pending {
     ray: Ray,
     leaving: Option<Leaving>,
     path: PathWeight,
+    /// Product of Fresnel's reflectances on the path.
+    geometric: f32,
     parent: Option<(u32, Side)>,
     medium: u32,
     known: Known,
@@ -227,6 +235,8 @@ impl<'a> Grower<'a> {
             opaque: geometry.of_solids(&values.opaque()),
             values,
             lights: scene.lights.iter().map(|l| with_unit_direction(&l.place)).collect(),
+            models: scene.materials.iter().map(|m| m.model).collect(),
+            weighing: scene.materials.iter().map(Material::weighs_branches).collect(),
             keys,
             bends: scene.materials.iter().map(Material::ior_matters).collect(),
             iors: geometry.of_solids(&iors),
@@ -329,6 +339,7 @@ impl<'a> Grower<'a> {
             ray,
             leaving: None,
             path: PathWeight::EYE,
+            geometric: 1.0,
             parent: None,
             medium: Media::OUTSIDE,
             known,
@@ -380,19 +391,23 @@ impl<'a> Grower<'a> {
         sink: &mut K,
     ) -> Result<(), Stop> {
         let at = self.geometry.interaction(&from.ray, hit);
-        let surface = Surface::new(&at, from.ray.direction);
+        let mut surface = Surface::new(&at, from.ray.direction);
         let crossing = worker.media.cross(from.medium, &at, surface.entering);
         let eta = crossing.eta(&self.iors);
         // What lets nothing through bends nothing, and reflects nothing more than a mirror does.
         let bends = self.bends[at.material as usize];
         let refracted = if bends { surface.refract(eta) } else { None };
+        (surface.contrast, surface.refracted) = (crossing.contrast(&self.iors), refracted);
         let total = bends && refracted.is_none();
-        let follow = |kind| self.values.follow(from.path, Factor::new(kind, at.material, 0));
-        let reflected = follow(if total { Kind::TotalReflect } else { Kind::Reflect });
-        let transmitted = (!total).then(|| follow(Kind::Transmit));
+        let fresnel = self.reflectance(at.material, &surface);
+        let [mirrored, passed] = weights(fresnel);
+        let follow = |kind, by: f32| self.follow(from, (kind, at.material), by * from.geometric);
+        let reflected = follow(if total { Kind::TotalReflect } else { Kind::Reflect }, mirrored);
+        let transmitted = (!total).then(|| follow(Kind::Transmit, passed));
         let ends = Ends::new(branch(reflected), transmitted.map_or(Branch::Absent, branch), total);
         let (material, slot) = (at.material, at.slot);
-        let node = Node { t: hit.t, primitive: hit.primitive, material, lights: 0, slot, ends };
+        let node =
+            Node { t: hit.t, primitive: hit.primitive, material, lights: 0, slot, ends, fresnel };
         let name = sink.node(node);
         for (light, place) in self.lights.iter().enumerate() {
             let light = (light as u16, place);
@@ -400,7 +415,7 @@ impl<'a> Grower<'a> {
             self.light(simd, worker, (&at, &surface), light, met, sink)?;
         }
         let ends = recalled.map(|r| r.node.ends);
-        let mut queue = |direction, path, side, medium, known| {
+        let mut queue = |direction, (path, by): (PathWeight, f32), side, medium, known| {
             let (ray, leaving) = match known {
                 // The direction of a ray that is not followed is of no use.
                 Known::Dropped => (from.ray, None),
@@ -409,30 +424,64 @@ impl<'a> Grower<'a> {
                     (ray, Some(leaving))
                 }
             };
-            let parent = Some((name, side));
-            worker.pending.push(Pending { ray, leaving, path, parent, medium, known });
+            let (parent, geometric) = (Some((name, side)), by * from.geometric);
+            worker.pending.push(Pending { ray, leaving, path, geometric, parent, medium, known });
         };
         let same = ends.is_some() && self.refracts_as_before(&crossing, eta);
         let through = transmitted.and_then(Result::ok).zip(refracted);
         match (through, known(ends.map(Ends::transmitted), same, through.is_some())) {
             (Some((path, direction)), known) => {
-                queue(direction, path, Side::Transmitted, crossing.behind, known);
+                queue(direction, (path, passed), Side::Transmitted, crossing.behind, known);
             }
             (None, Known::Dropped) => {
-                queue(at.point, from.path, Side::Transmitted, from.medium, Known::Dropped);
+                queue(at.point, (from.path, 0.0), Side::Transmitted, from.medium, Known::Dropped);
             }
             _ => {}
         }
         match (reflected, known(ends.map(Ends::reflected), true, reflected.is_ok())) {
             (Ok(path), known) => {
-                queue(surface.reflect(), path, Side::Reflected, from.medium, known);
+                queue(surface.reflect(), (path, mirrored), Side::Reflected, from.medium, known);
             }
             (Err(_), Known::Dropped) => {
-                queue(at.point, from.path, Side::Reflected, from.medium, Known::Dropped);
+                queue(at.point, (from.path, 0.0), Side::Reflected, from.medium, Known::Dropped);
             }
             _ => {}
         }
         Ok(())
+    }
+
+    /// Fresnel's reflectance, or [`NO_FRESNEL`] of a material whose branches it does not weigh.
+    #[inline(always)]
+    fn reflectance(&self, material: u16, surface: &Surface) -> f32 {
+        match self.weighing[material as usize] {
+            true => surface.reflectance() as f32,
+            false => NO_FRESNEL,
+        }
+    }
+
+    /// The rule of liveness for a branch of this geometric weight.
+    #[inline(always)]
+    fn follow(
+        &self,
+        from: &Pending,
+        (kind, material): (Kind, u16),
+        geometric: f32,
+    ) -> Result<PathWeight, End> {
+        if self.values.faint(geometric) {
+            return Err(End::Faint);
+        }
+        self.values.follow(from.path, Factor::new(kind, material, 0))
+    }
+
+    /// What a light that shines onto the surface from behind shows of itself: none without Hall.
+    #[inline(always)]
+    fn behind(&self, material: u16, surface: &Surface, to_light: DVec3) -> Lobe {
+        match (self.models[material as usize], surface.refracted) {
+            (Model::Hall, Some(through)) if surface.geometric.dot(to_light) < 0.0 => {
+                lobe::transmitted(through, to_light, surface.reflectance())
+            }
+            _ => Lobe::NONE,
+        }
     }
 
     /// Whether a surface bends rays as it did in the kept trees.
@@ -441,7 +490,9 @@ impl<'a> Grower<'a> {
         crossing.eta(&self.iors_before) == eta
     }
 
-    /// Sends a shadow ray to a light in front of the geometric surface, unless `met` still stands.
+    /// Sends a shadow ray to a light in front of the geometric surface, and to one that shines
+    /// through it, unless `met` still stands. Where nothing passes, the surface's own solid is what
+    /// stops the latter.
     #[inline(always)]
     fn light<S: Simd, K: Sink>(
         &self,
@@ -456,7 +507,14 @@ impl<'a> Grower<'a> {
             LightPlace::Point(p) => (*p - at.point).normalize_or_zero(),
             LightPlace::Direction(d) => -*d,
         };
-        if surface.geometric.dot(to_light) <= 0.0 {
+        let front = surface.geometric.dot(to_light) > 0.0;
+        let behind = if front { Lobe::NONE } else { self.behind(at.material, surface, to_light) };
+        if !front && behind == Lobe::NONE {
+            return Ok(());
+        }
+        let stopped = LightHit { light, crossed: BLOCKED, n_dot_l: 0.0, angle: 1.0, weight: 0.0 };
+        if !front && self.opaque[at.solid as usize] {
+            sink.light(stopped, &[at.solid]);
             return Ok(());
         }
         let blocker = match met {
@@ -469,8 +527,7 @@ impl<'a> Grower<'a> {
             _ => self.cast_shadow(simd, worker, at, to_light, place),
         };
         if let Some(solid) = blocker {
-            let hit = LightHit { light, crossed: BLOCKED, n_dot_l: 0.0, one_minus_r_dot_v: 1.0 };
-            sink.light(hit, &[solid]);
+            sink.light(stopped, &[solid]);
             return Ok(());
         }
         let crossed = &mut worker.crossed;
@@ -478,16 +535,16 @@ impl<'a> Grower<'a> {
             return Err(Stop::Surfaces);
         }
         crossed.sort_unstable();
-        let n_dot_l = surface.normal.dot(to_light);
-        let mirrored = surface.normal * (2.0 * n_dot_l) - to_light;
-        let one_minus_r_dot_v = (mirrored - surface.to_eye).length_squared() / 2.0;
-        let hit = LightHit {
-            light,
-            crossed: crossed.len() as u16,
-            n_dot_l: n_dot_l as f32,
-            one_minus_r_dot_v: one_minus_r_dot_v as f32,
+        let (n_dot_l, Lobe { angle, weight }) = if front {
+            let lit = Lit { normal: surface.normal, to_eye: surface.to_eye, to_light };
+            let model = self.models[at.material as usize];
+            let lobe = lobe::highlight(model, &lit, surface.contrast);
+            (surface.normal.dot(to_light) as f32, lobe)
+        } else {
+            (0.0, behind)
         };
-        sink.light(hit, crossed);
+        let crossings = crossed.len() as u16;
+        sink.light(LightHit { light, crossed: crossings, n_dot_l, angle, weight }, crossed);
         Ok(())
     }
 
@@ -527,54 +584,6 @@ fn branch(followed: Result<PathWeight, End>) -> Branch {
         Err(End::Zero) => Branch::Zero,
         Err(End::Weight) => Branch::Weight,
         Err(End::Depth) => Branch::Depth,
-    }
-}
-
-/// A surface as seen by the ray that met it: both normals on the ray's side.
-struct Surface {
-    normal: DVec3,
-    geometric: DVec3,
-    /// Unit vector back along the ray.
-    to_eye: DVec3,
-    /// Whether the ray comes from outside.
-    entering: bool,
-}
-
-impl Surface {
-    #[inline(always)]
-    fn new(at: &Interaction, direction: DVec3) -> Surface {
-        let to_eye = -direction;
-        let entering = at.geometric_normal.dot(to_eye) >= 0.0;
-        let side = if entering { 1.0 } else { -1.0 };
-        let geometric = at.geometric_normal * side;
-        let smooth = at.shading_normal * side;
-        let normal = if smooth.dot(to_eye) > 0.0 { smooth } else { geometric };
-        Surface { normal, geometric, to_eye, entering }
-    }
-
-    /// Direction of the mirror ray, always above the geometric surface.
-    #[inline(always)]
-    fn reflect(&self) -> DVec3 {
-        let about = |n: DVec3| n * (2.0 * n.dot(self.to_eye)) - self.to_eye;
-        let mirrored = about(self.normal);
-        let above = mirrored.dot(self.geometric) > 0.0;
-        if above { mirrored } else { about(self.geometric) }.normalize()
-    }
-
-    /// Direction of the refracted ray for `eta` = index in front / index behind, always below the
-    /// geometric surface; `None` in total reflection. Snell's law in vector form (Heckbert 1989).
-    #[inline(always)]
-    fn refract(&self, eta: f64) -> Option<DVec3> {
-        let through = |n: DVec3| {
-            let c = n.dot(self.to_eye);
-            let radicand = 1.0 - eta * eta * (1.0 - c * c);
-            (radicand >= 0.0).then(|| n * (eta * c - radicand.sqrt()) - self.to_eye * eta)
-        };
-        if eta == 1.0 {
-            return Some(-self.to_eye);
-        }
-        let bent = through(self.normal)?;
-        let below = bent.dot(self.geometric) < 0.0;
-        if below { Some(bent.normalize()) } else { through(self.geometric).map(DVec3::normalize) }
+        Err(End::Faint) => Branch::Faint,
     }
 }

@@ -103,11 +103,11 @@ impl KeptTrees {
             bits.iter().enumerate().fold(0u64, |word, (i, &hit)| word | u64::from(hit) << i)
         }));
         self.nodes.extend(nodes.iter().map(|&node| {
-            let Node { t, primitive, material: _, lights, slot: _, ends } = node;
+            let Node { t, primitive, material: _, lights, slot: _, ends, fresnel: _ } = node;
             KeptNode { t, primitive, lights, ends }
         }));
         self.lights.extend(lights.iter().map(|hit| {
-            let LightHit { light, crossed, n_dot_l: _, one_minus_r_dot_v: _ } = *hit;
+            let LightHit { light, crossed, n_dot_l: _, angle: _, weight: _ } = *hit;
             KeptLight { key: keys[light as usize], crossed }
         }));
         self.crossings.extend_from_slice(crossings);

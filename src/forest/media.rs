@@ -20,6 +20,9 @@ struct Medium {
 pub(super) struct Crossing {
     /// The solids that meet there, in front and behind; `None` is the air.
     solids: [Option<u32>; 2],
+    /// The same, but for a thin surface what is in front and the surface itself: it mirrors like the
+    /// material that it is of, and bends nothing.
+    mirroring: [Option<u32>; 2],
     /// The list of solids behind the surface.
     pub(super) behind: u32,
 }
@@ -29,10 +32,20 @@ impl Crossing {
     /// solid.
     #[inline(always)]
     pub(super) fn eta(&self, iors: &[f64]) -> f64 {
-        let [front, behind] =
-            self.solids.map(|solid| solid.map_or(1.0, |solid| iors[solid as usize]));
-        front / behind
+        ratio(self.solids, iors)
     }
+
+    /// The same for Fresnel's reflectance.
+    #[inline(always)]
+    pub(super) fn contrast(&self, iors: &[f64]) -> f64 {
+        ratio(self.mirroring, iors)
+    }
+}
+
+#[inline(always)]
+fn ratio(solids: [Option<u32>; 2], iors: &[f64]) -> f64 {
+    let [front, behind] = solids.map(|solid| solid.map_or(1.0, |solid| iors[solid as usize]));
+    front / behind
 }
 
 impl Media {
@@ -77,19 +90,22 @@ impl Media {
     /// Crosses a surface, coming from `front`, a list of solids.
     #[inline(always)]
     pub(super) fn cross(&mut self, front: u32, at: &Interaction, entering: bool) -> Crossing {
+        let own = Some(at.solid);
         if at.thin {
             // Nothing is refracted: whatever is in front is behind, too.
-            return Crossing { solids: [None, None], behind: front };
+            let mirroring = [self.top(front), own];
+            return Crossing { solids: [None, None], mirroring, behind: front };
         }
-        let own = Some(at.solid);
         if entering {
             let behind = self.push(front, at.solid);
-            Crossing { solids: [self.top(front), own], behind }
+            let solids = [self.top(front), own];
+            Crossing { solids, mirroring: solids, behind }
         } else {
             let behind = self.without(front, at.solid);
             // A ray that leaves a solid which it never entered started inside it.
             let inside = if behind == front { own } else { self.top(front) };
-            Crossing { solids: [inside, self.top(behind)], behind }
+            let solids = [inside, self.top(behind)];
+            Crossing { solids, mirroring: solids, behind }
         }
     }
 }

@@ -3,8 +3,10 @@
 pub mod camera;
 pub mod grow;
 pub mod kept;
+pub mod lobe;
 mod media;
 pub mod sampling;
+mod surface;
 pub mod tree;
 
 use std::sync::Arc;

@@ -19,10 +19,20 @@ pub enum Branch {
     Depth,
     /// There is no such ray: nothing is refracted in total reflection.
     Absent,
+    /// Frontier: its geometric weight, a product of Fresnel's reflectances, is below the cut-off,
+    /// whatever the parameters are.
+    Faint,
 }
 
-const BRANCHES: [Branch; 6] =
-    [Branch::Grown, Branch::Missed, Branch::Zero, Branch::Weight, Branch::Depth, Branch::Absent];
+const BRANCHES: [Branch; 7] = [
+    Branch::Grown,
+    Branch::Missed,
+    Branch::Zero,
+    Branch::Weight,
+    Branch::Depth,
+    Branch::Absent,
+    Branch::Faint,
+];
 
 /// Both branches of a node in a byte: the reflected one in bits 0…2, the transmitted one in bits
 /// 3…5, bit 6 set in total reflection. `0b0_010_000`: reflected grown, transmitted `Zero`.
@@ -80,19 +90,49 @@ pub struct Node {
     pub slot: u8,
     /// What became of its branches.
     pub ends: Ends,
+    /// Fresnel's reflectance F, or [`NO_FRESNEL`].
+    pub fresnel: f32,
 }
 
-/// A light in front of a node's geometric surface, and what its shadow ray met: 12 bytes.
+/// [`Node::fresnel`] of a material whose branches are not weighted.
+pub const NO_FRESNEL: f32 = -1.0;
+
+impl Node {
+    /// Geometric weights of the mirror and the refracted ray: F and 1 − F, or both 1.
+    #[inline(always)]
+    pub fn weights(&self) -> [f32; 2] {
+        weights(self.fresnel)
+    }
+}
+
+/// [`Node::weights`] of a node with this reflectance.
+#[inline(always)]
+pub fn weights(fresnel: f32) -> [f32; 2] {
+    if fresnel == NO_FRESNEL { [1.0; 2] } else { [fresnel, 1.0 - fresnel] }
+}
+
+/// A light in front of a node's geometric surface, or, in Hall's model, behind it, and what its
+/// shadow ray met: 16 bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightHit {
     /// Index of the light.
     pub light: u16,
     /// How many entries of `crossings` belong to it, or [`BLOCKED`]: one, the witness.
     pub crossed: u16,
-    /// N·L with the shading normal: may be ≤ 0 where normals are smoothed.
+    /// N·L with the shading normal: may be ≤ 0 where normals are smoothed; 0 for a light behind.
     pub n_dot_l: f32,
-    /// 1 − R·V: ≥ 1 where there is no highlight.
-    pub one_minus_r_dot_v: f32,
+    /// [`Lobe::angle`](super::lobe::Lobe) of the highlight.
+    pub angle: f32,
+    /// [`Lobe::weight`](super::lobe::Lobe) of the highlight, 0 if there is none.
+    pub weight: f32,
+}
+
+impl LightHit {
+    /// Whether it is the transmitted highlight of a light behind the surface.
+    #[inline(always)]
+    pub fn is_behind(&self) -> bool {
+        self.n_dot_l <= 0.0 && self.weight > 0.0
+    }
 }
 
 /// [`LightHit::crossed`] of a shadow ray that an opaque solid stopped.
@@ -185,6 +225,8 @@ impl TileTrees {
                 assert!(node.t > 0.0 && node.t.is_finite(), "distance {}", node.t);
                 assert!((node.material as usize) < materials, "material {}", node.material);
                 let ends = node.ends;
+                let known = (0.0..=1.0).contains(&node.fresnel) || node.fresnel == NO_FRESNEL;
+                assert!(known, "reflectance {}", node.fresnel);
                 assert_eq!(ends.total(), ends.transmitted() == Branch::Absent, "total reflection");
                 assert_ne!(ends.reflected(), Branch::Absent, "every node has a mirror ray");
                 let children = [ends.reflected(), ends.transmitted()];
@@ -196,8 +238,9 @@ impl TileTrees {
                     assert!(previous < Some(hit.light), "lights out of order");
                     assert!((hit.light as usize) < lights, "light {}", hit.light);
                     assert!(crossed.iter().all(|&s| (s as usize) < solids), "crossed solid");
-                    let finite = hit.n_dot_l.is_finite() && hit.one_minus_r_dot_v.is_finite();
-                    assert!(finite, "cosines of {hit:?}");
+                    let finite = hit.n_dot_l.is_finite() && hit.angle.is_finite();
+                    assert!(finite && hit.angle >= 0.0, "cosines of {hit:?}");
+                    assert!(hit.weight >= 0.0 && hit.weight.is_finite(), "weight of {hit:?}");
                     previous = Some(hit.light);
                 }
             }
@@ -301,9 +344,10 @@ mod tests {
             lights: 0,
             slot: 0,
             ends: Ends::new(Branch::Grown, Branch::Zero, false),
+            fresnel: NO_FRESNEL,
         };
         trees.node(node);
-        let lit = LightHit { light: 0, crossed: 2, n_dot_l: 0.5, one_minus_r_dot_v: 0.25 };
+        let lit = LightHit { light: 0, crossed: 2, n_dot_l: 0.5, angle: 0.25, weight: 1.0 };
         trees.light(lit, &[0, 1]);
         trees.node(Node { ends: Ends::new(Branch::Zero, Branch::Grown, false), ..node });
         trees.node(Node { ends: Ends::new(Branch::Grown, Branch::Absent, true), ..node });
@@ -326,7 +370,7 @@ mod tests {
         let sound = (0..=255).filter(|bits| Ends::from_bits(*bits).is_some()).count();
         assert_eq!(sound, 2 * BRANCHES.len() * BRANCHES.len());
         assert_eq!(size_of::<Node>(), 24);
-        assert_eq!(size_of::<LightHit>(), 12);
+        assert_eq!(size_of::<LightHit>(), 16);
     }
 
     #[test]

@@ -55,13 +55,16 @@ pub(super) fn scene(solids: Vec<Solid>) -> Scene {
         ambient: Rgb::WHITE,
         diffuse: Rgb::WHITE,
         specular: Rgb::BLACK,
+        model: crate::scene::model::Model::Phong,
         shininess: 1.0,
+        roughness: 1.0,
         metallic: 0.0,
         emission: Rgb::BLACK,
         reflect: Rgb::BLACK,
         transmit: Rgb::BLACK,
         filter: Rgb::WHITE,
         ior: 1.0,
+        fresnel: false,
     };
     let checker = Paint::Checker { a: Rgb::WHITE, b: Rgb::BLACK, size: 1.0 };
     Scene {

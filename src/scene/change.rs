@@ -4,6 +4,7 @@
 
 use std::sync::Arc;
 
+use super::model::{Model, Peak};
 use super::{
     Background, Camera, Light, LightPlace, Material, Paint, Picture, Placement, Scene, Shape,
     Solid, Trace,
@@ -33,7 +34,7 @@ pub struct Change {
     pub lights: Vec<Option<u16>>,
     /// Per material of the new scene that of the old one.
     pub materials: Vec<Option<u16>>,
-    /// Materials of the new scene whose highlight has another exponent: their coefficients are folded
+    /// Materials of the new scene whose highlight has another peak: their coefficients are folded
     /// again.
     pub refold: Vec<u16>,
     /// A factor may have another value, or the rule of liveness another limit.
@@ -55,6 +56,10 @@ impl Change {
         let Background { color } = background;
         change.term(*color != new.background.color);
         change.trace(trace, &new.trace);
+        let weighs = |s: &Scene| s.materials.iter().any(Material::weighs_branches);
+        let other_cutoff = trace.cutoff != new.trace.cutoff;
+        // What is cut off by geometry is not in the terms.
+        change.ray(other_cutoff && (weighs(old) || weighs(new)), "trace.cutoff");
         change.form(solids.len() != new.solids.len(), "the number of solids");
         change.lights(lights, &new.lights);
         change.materials = matched(materials, &new.materials, |m| &m.name);
@@ -174,14 +179,17 @@ impl Change {
             kloc,
             ambient,
             diffuse,
+            model,
             specular,
-            shininess,
+            shininess: _,
+            roughness: _,
             metallic,
             emission,
             reflect,
             transmit,
             filter,
             ior,
+            fresnel,
         } = old;
         self.paint(before, paint, &new.paint);
         let local = *kloc != new.kloc || *ambient != new.ambient || *diffuse != new.diffuse;
@@ -189,12 +197,15 @@ impl Change {
         self.term(local || gloss || *emission != new.emission);
         let path = *reflect != new.reflect || *transmit != new.transmit || *filter != new.filter;
         self.term(path);
-        if *shininess != new.shininess {
+        // `shininess` and `roughness`: only the one that the model heeds shapes its peak.
+        if *model == new.model && Peak::of(old) != Peak::of(new) {
             self.refold.push(index as u16);
         }
+        self.ray(*model != new.model, "model");
+        self.ray(*fresnel != new.fresnel, "fresnel");
         let bends = *ior != new.ior && (old.ior_matters() || new.ior_matters());
         self.node(bends, before, "ior");
-        self.casts |= bends && !new.transmit.is_black();
+        self.casts |= bends && (!new.transmit.is_black() || new.weighs_branches());
     }
 
     fn paint(&mut self, before: u16, old: &Paint, new: &Paint) {
@@ -259,15 +270,19 @@ fn matched<T>(old: &[T], new: &[T], name: impl Fn(&T) -> &str) -> Vec<Option<u16
 }
 
 impl Material {
-    /// Whether its index of refraction shows: what lets no light through bends none. With a weight
-    /// above 1 total reflection differs from a mirror's.
+    /// Whether its index of refraction shows: what lets no light through bends none, but Fresnel may
+    /// weigh its highlights or its mirror. With a weight above 1 total reflection differs from a
+    /// mirror's.
     pub fn ior_matters(&self) -> bool {
-        !self.transmit.is_black() || self.reflect.max_channel() > 1.0
+        let weighed = self.weighs_branches() || self.model == Model::CookTorrance;
+        weighed || !self.transmit.is_black() || self.reflect.max_channel() > 1.0
     }
 
     /// Whether the rays of the seen path and shadow rays go on from it as from `other`.
     fn leads_rays_like(&self, other: &Material) -> bool {
         let path = |m: &Material| (m.reflect, m.transmit, m.filter);
-        path(self) == path(other) && (self.ior == other.ior || !self.ior_matters())
+        let weighs = |m: &Material| (m.weighs_branches(), m.model == Model::Hall);
+        let alike = path(self) == path(other) && weighs(self) == weighs(other);
+        alike && (self.ior == other.ior || !self.ior_matters())
     }
 }

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::Placement;
 use super::mesh::Mesh;
+use super::model::Model;
 use super::{
     Background, Camera, Lens, Light, LightPlace, Material, Paint, Picture, Scene, Shape, Solid,
     Trace,
@@ -78,14 +79,17 @@ impl Material {
             kloc: Rgb::WHITE,
             ambient: Rgb::grey(0.1),
             diffuse: Rgb::grey(0.7),
+            model: Model::Phong,
             specular: Rgb::BLACK,
             shininess: 32.0,
+            roughness: 0.3,
             metallic: 0.0,
             emission: Rgb::BLACK,
             reflect: Rgb::BLACK,
             transmit: Rgb::BLACK,
             filter: Rgb::WHITE,
             ior: 1.5,
+            fresnel: false,
         }
     }
 }

@@ -6,7 +6,8 @@ use crate::color::Rgb;
 /// A sum of coefficients may exceed 1 by this, the rounding of a few `f32`.
 const ROUNDING: f32 = 1e-5;
 
-/// A material whose `kloc·(ambient + diffuse) + reflect + transmit` exceeds 1 in a channel.
+/// A material whose `kloc·(ambient + diffuse) + reflect + transmit` exceeds 1 in a channel;
+/// with Fresnel's weights the larger of the last two counts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Overbright {
     /// Index into `Scene::materials`.
@@ -24,7 +25,12 @@ pub fn overbright(scene: &Scene) -> Vec<Overbright> {
 
 fn returned(material: &Material) -> Rgb {
     let local = material.kloc * (material.ambient + material.diffuse);
-    local + material.reflect + material.transmit
+    if material.weighs_branches() {
+        // F·reflect + (1 − F)·transmit is between the two.
+        local + Rgb(std::array::from_fn(|c| material.reflect.0[c].max(material.transmit.0[c])))
+    } else {
+        local + material.reflect + material.transmit
+    }
 }
 
 #[cfg(test)]
@@ -39,6 +45,11 @@ mod tests {
         let found = overbright(&scene);
         assert_eq!(found.len(), 1);
         assert!((found[0].sum.0[2] - 1.05).abs() < 1e-6);
+        scene.materials[0].transmit = Rgb::grey(0.24);
+        assert!((overbright(&scene)[0].sum.0[2] - 1.29).abs() < 1e-6);
+        scene.materials[0].fresnel = true;
+        assert!((overbright(&scene)[0].sum.0[2] - 1.05).abs() < 1e-6);
+        scene.materials[0].transmit = Rgb::BLACK;
         scene.materials[0].kloc = Rgb::grey(0.5);
         assert_eq!(overbright(&scene), []);
     }

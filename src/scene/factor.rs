@@ -24,6 +24,8 @@ pub enum Kind {
     Diffuse,
     /// `kloc · specular`, tinted by `metallic` with the colour of the slot.
     Specular,
+    /// `kloc · specular · transmit · filter`, for the highlight of a light behind the surface.
+    Through,
     /// `color · intensity` of a light, 0 if it is off.
     Light,
     /// `transmit · filter` of a material that a shadow ray crosses, once per surface.
@@ -33,7 +35,7 @@ pub enum Kind {
     Channel,
 }
 
-const KINDS: [Kind; 10] = [
+const KINDS: [Kind; 11] = [
     Kind::Background,
     Kind::Reflect,
     Kind::Transmit,
@@ -41,6 +43,7 @@ const KINDS: [Kind; 10] = [
     Kind::Ambient,
     Kind::Diffuse,
     Kind::Specular,
+    Kind::Through,
     Kind::Light,
     Kind::Shadow,
     Kind::Channel,
@@ -100,7 +103,8 @@ impl Factor {
     pub fn is_of_material(self) -> bool {
         match self.kind() {
             Kind::Reflect | Kind::Transmit | Kind::TotalReflect => true,
-            Kind::Ambient | Kind::Diffuse | Kind::Specular | Kind::Shadow => true,
+            Kind::Ambient | Kind::Diffuse | Kind::Specular => true,
+            Kind::Through | Kind::Shadow => true,
             Kind::Background | Kind::Light | Kind::Channel => false,
         }
     }
@@ -121,12 +125,16 @@ impl Factor {
             Kind::Ambient => format!("ambient({}{})", material(), slot()),
             Kind::Diffuse => format!("diffuse({}{})", material(), slot()),
             Kind::Specular => format!("specular({}{})", material(), slot()),
+            Kind::Through => format!("through({})", material()),
             Kind::Light => format!("light({})", scene.lights[self.index()].name),
             Kind::Shadow => format!("shadow({})", material()),
             Kind::Channel => ["red", "green", "blue"][self.index()].into(),
         }
     }
 }
+
+/// Geometric weights below 2^-60 are faint at any cut-off.
+const LEAST_GEOMETRIC: f32 = 1.0 / (1u64 << 60) as f32;
 
 /// Slots that a paint may have.
 const SLOTS: usize = 2;
@@ -142,6 +150,7 @@ pub struct FactorValues {
     ambient: Vec<[Rgb; SLOTS]>,
     diffuse: Vec<[Rgb; SLOTS]>,
     specular: Vec<[Rgb; SLOTS]>,
+    through: Vec<Rgb>,
     light: Vec<Rgb>,
     limits: Limits,
 }
@@ -167,6 +176,7 @@ impl FactorValues {
             specular: materials()
                 .map(|m| slot_colors(m).map(|o| m.kloc * m.specular * tint(o, m.metallic)))
                 .collect(),
+            through: materials().map(|m| m.kloc * m.specular * (m.transmit * m.filter)).collect(),
             light: scene.lights.iter().map(light_value).collect(),
             limits: Limits { depth: scene.trace.depth, cutoff: scene.trace.cutoff },
         }
@@ -196,6 +206,7 @@ impl FactorValues {
             Kind::Ambient => self.ambient[i][slot],
             Kind::Diffuse => self.diffuse[i][slot],
             Kind::Specular => self.specular[i][slot],
+            Kind::Through => self.through[i],
             // A light after the last one is gone.
             Kind::Light => self.light.get(i).copied().unwrap_or(Rgb::BLACK),
             Kind::Channel => Rgb(std::array::from_fn(|c| if c == i { 1.0 } else { 0.0 })),
@@ -205,6 +216,13 @@ impl FactorValues {
     /// Whether, per material, nothing passes through: `transmit · filter` is zero.
     pub fn opaque(&self) -> Vec<bool> {
         self.transmit.iter().map(|t| t.is_black()).collect()
+    }
+
+    /// Whether a branch of this geometric weight, a product of Fresnel's reflectances, is too faint
+    /// to be followed whatever its parameters are: below the cut-off, or lost in any sum.
+    #[inline(always)]
+    pub fn faint(&self, geometric: f32) -> bool {
+        geometric < self.limits.cutoff.max(LEAST_GEOMETRIC)
     }
 
     /// Follows a branch that carries the path factor `factor` from a node reached with weight
@@ -259,6 +277,8 @@ pub enum End {
     Weight,
     /// It would be deeper than the limit.
     Depth,
+    /// Its geometric weight is below the cut-off.
+    Faint,
 }
 
 fn slot_colors(material: &Material) -> [Rgb; SLOTS] {

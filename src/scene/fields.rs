@@ -15,6 +15,8 @@ pub const WEIGHT: Range = Range::closed(0.0, 10.0);
 pub const DEPTH: Range = Range::closed(0.0, 64.0);
 /// A share of one.
 pub const SHARE: Range = Range::closed(0.0, 1.0);
+/// Slope of the facets of a rough surface.
+pub const ROUGHNESS: Range = Range::closed(0.02, 1.0);
 /// Positions, directions and angles.
 pub const COORDINATE: Range = Range::closed(-1e12, 1e12);
 /// Radii, sides and scales.
@@ -148,27 +150,33 @@ pub fn material(material: &mut Material, v: &mut dyn Visit) {
         kloc,
         ambient,
         diffuse,
+        model,
         specular,
         shininess,
+        roughness,
         metallic,
         emission,
         reflect,
         transmit,
         filter,
         ior,
+        fresnel,
     } = material;
     self::paint(paint, v);
     v.leaf("kloc", Need::Optional, Slot::Coefficient(kloc, COEFFICIENT));
     v.leaf("ambient", Need::Optional, Slot::Coefficient(ambient, COEFFICIENT));
     v.leaf("diffuse", Need::Optional, Slot::Coefficient(diffuse, COEFFICIENT));
+    v.leaf("model", Need::Optional, Slot::Choice(model));
     v.leaf("specular", Need::Optional, Slot::Coefficient(specular, COEFFICIENT));
     v.leaf("shininess", Need::Optional, Slot::Single(shininess, Range::closed(0.0, 1e6)));
+    v.leaf("roughness", Need::Optional, Slot::Single(roughness, ROUGHNESS));
     v.leaf("metallic", Need::Optional, Slot::Single(metallic, SHARE));
     v.leaf("emission", Need::Optional, Slot::Coefficient(emission, COEFFICIENT));
     v.leaf("reflect", Need::Optional, Slot::Coefficient(reflect, WEIGHT));
     v.leaf("transmit", Need::Optional, Slot::Coefficient(transmit, WEIGHT));
     v.leaf("filter", Need::Optional, Slot::Coefficient(filter, COEFFICIENT));
     v.leaf("ior", Need::Optional, Slot::Number(ior, Range::closed(0.1, 10.0)));
+    v.leaf("fresnel", Need::Optional, Slot::Flag(fresnel));
 }
 
 /// Visits `color` or `texture`.

@@ -12,6 +12,7 @@ pub mod energy;
 pub mod factor;
 pub mod fields;
 pub mod mesh;
+pub mod model;
 mod obj;
 pub mod path;
 pub mod problem;
@@ -29,6 +30,7 @@ use glam::DVec3;
 
 use crate::color::Rgb;
 use mesh::Mesh;
+use model::Model;
 
 /// A whole scene. Lengths are in one unit of the user's choice, colours linear Rec. 709.
 ///
@@ -155,10 +157,14 @@ pub struct Material {
     pub ambient: Rgb,
     /// Lambert's coefficient, times the colour.
     pub diffuse: Rgb,
-    /// Phong's highlight, white unless `metallic`.
+    /// How its highlights spread.
+    pub model: Model,
+    /// Strength of the highlight, white unless `metallic`.
     pub specular: Rgb,
-    /// Phong's exponent.
+    /// Exponent of the highlight of Phong, Blinn and Hall.
     pub shininess: f32,
+    /// Root mean square slope m of Cook-Torrance's facets, 0.02 … 1.
+    pub roughness: f32,
     /// 0 = white highlight, 1 = highlight in the colour of the surface.
     pub metallic: f32,
     /// Light given off by itself.
@@ -171,6 +177,9 @@ pub struct Material {
     pub filter: Rgb,
     /// Index of refraction.
     pub ior: f64,
+    /// Whether `reflect` and `transmit` are weighted by Fresnel's reflectance F and 1 − F, as in
+    /// Hall's model they always are.
+    pub fresnel: bool,
 }
 
 /// Colour of a surface: one colour per *slot*; geometry decides which slot a point falls into.

@@ -59,7 +59,7 @@ pub fn parameters(scene: &Scene) -> Vec<Parameter> {
     list
 }
 
-/// Sets the parameter at `path` to a TOML value; the name of a material may lack its quotes.
+/// Sets the parameter at `path` to a TOML value; a name may lack its quotes.
 ///
 /// After an error the scene is what it was; after success it is as valid as it was before.
 pub fn set(scene: &mut Scene, path: &str, value: &str) -> Result<(), PathError> {
@@ -122,7 +122,8 @@ fn assign(
     value: &str,
     names: &Names,
 ) -> Result<(), (String, String)> {
-    let bare_name = slot.kind() == Kind::Material && !value.starts_with(['"', '\'']);
+    let named = matches!(slot.kind(), Kind::Material | Kind::Choice(_));
+    let bare_name = named && !value.starts_with(['"', '\'']);
     let parsed = match DeValue::parse(value) {
         _ if bare_name => Spanned::new(0..value.len(), DeValue::String(value.into())),
         Ok(parsed) => parsed,
@@ -188,6 +189,7 @@ mod tests {
 
     use super::*;
     use crate::color::Rgb;
+    use crate::scene::model::Model;
     use crate::scene::{Light, Material, Paint, Shape, Solid, read};
 
     fn scene() -> Scene {
@@ -266,11 +268,16 @@ mod tests {
             ("camera.eye", "[1, 2, 3]"),
             ("solids.box.scale", "2"),
             ("solids.box.material", "my tiles"),
+            ("materials.glass.model", "cook_torrance"),
+            ("materials.glass.roughness", "0.02"),
+            ("materials.glass.fresnel", "true"),
             ("solids.knot.material", "\"my tiles\""),
         ] {
             set(&mut scene, path, value).unwrap_or_else(|error| panic!("{error}"));
         }
         assert_eq!(scene.materials[0].diffuse, Rgb::grey(0.4));
+        assert_eq!(scene.materials[0].model, Model::CookTorrance);
+        assert!(scene.materials[0].fresnel && scene.materials[0].roughness == 0.02);
         assert!(matches!(scene.materials[1].paint, Paint::Checker { a: Rgb([1.0, 0.0, 0.5]), .. }));
         assert_eq!((scene.lights[0].on, scene.trace.samples), (false, 16));
         assert_eq!((scene.picture.size, scene.camera.eye.z), ([100, 50], 3.0));
@@ -323,6 +330,15 @@ mod tests {
             refused(&mut scene, "materials.glass.metallic", "1.5"),
             "materials.glass.metallic: `metallic` is 1.5, out of its range: 0 to 1\n  \
              help: the nearest allowed value is 1"
+        );
+        assert_eq!(
+            refused(&mut scene, "materials.glass.model", "blin"),
+            "materials.glass.model: there is no model `blin`\n  help: did you mean `blinn`?"
+        );
+        assert_eq!(
+            refused(&mut scene, "materials.glass.roughness", "0.01"),
+            "materials.glass.roughness: `roughness` is 0.01, out of its range: 0.02 to 1\n  \
+             help: the nearest allowed value is 0.02"
         );
         assert_eq!(
             refused(&mut scene, "solids.box.material", "glas"),

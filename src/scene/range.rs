@@ -40,6 +40,11 @@ impl Range {
             && (x < self.high || (self.high_included && x == self.high))
     }
 
+    /// The same for a value in `f32`, which cannot be every end exactly.
+    pub fn narrow(&self) -> Range {
+        Range { low: f64::from(self.low as f32), high: f64::from(self.high as f32), ..*self }
+    }
+
     /// The nearest number that may be the value; a millionth inside an end that may not. 0, or the
     /// end nearest to it, for NaN.
     pub fn clamp(&self, x: f64) -> f64 {
@@ -87,6 +92,8 @@ pub enum Kind {
     Pair,
     /// `true` or `false`.
     Flag,
+    /// One of these names.
+    Choice(&'static [&'static str]),
     /// `[x, y, z]`.
     Vector,
     /// A number or `[x, y, z]`.
@@ -108,6 +115,7 @@ impl Kind {
             Kind::Whole => "a whole number",
             Kind::Pair => "two whole numbers [a, b]",
             Kind::Flag => "true or false",
+            Kind::Choice(_) => "one of a list of names",
             Kind::Vector => "three numbers [x, y, z]",
             Kind::Scale => "a number or [x, y, z]",
             Kind::Points => "a list of points [[x, y, z], …]",
@@ -139,5 +147,9 @@ mod tests {
         assert!(Range::closed(0.0, 1.0).contains(1.0) && !Range::above(0.0, 1.0).contains(0.0));
         assert!(!Range::closed(0.0, 1.0).contains(f64::NAN));
         assert!(!Range::between(0.0, 180.0).contains(180.0));
+        let low = f64::from(0.02f32);
+        assert!(!Range::closed(0.02, 1.0).contains(low));
+        assert!(Range::closed(0.02, 1.0).narrow().contains(low));
+        assert!(!Range::closed(0.02, 1.0).narrow().contains(f64::from(0.02f32.next_down())));
     }
 }

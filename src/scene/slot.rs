@@ -1,5 +1,6 @@
 //! One editable value of a scene: its kind, its range, and how it is read from and written as TOML.
 
+use std::fmt;
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -12,6 +13,16 @@ use super::range::{Kind, Range};
 use super::toml_text::{number, one_or_three, quoted, vector};
 use super::value::{Names, Target, element};
 use crate::color::Rgb;
+
+/// One of several named things.
+pub trait Choice: fmt::Debug {
+    /// The names of all of them, as written in a scene file.
+    fn names(&self) -> &'static [&'static str];
+    /// Index of the present one.
+    fn chosen(&self) -> usize;
+    /// Takes the one with this index among the names.
+    fn choose(&mut self, index: usize);
+}
 
 /// A place in a scene that holds a value.
 #[derive(Debug)]
@@ -28,6 +39,8 @@ pub enum Slot<'a> {
     Pair(&'a mut [u32; 2], Range),
     /// A switch.
     Flag(&'a mut bool),
+    /// One of a list of names.
+    Choice(&'a mut dyn Choice),
     /// A point or direction.
     Vector(&'a mut DVec3, Range),
     /// A factor per axis.
@@ -54,6 +67,7 @@ impl Slot<'_> {
             Slot::Whole(..) => Kind::Whole,
             Slot::Pair(..) => Kind::Pair,
             Slot::Flag(_) => Kind::Flag,
+            Slot::Choice(choice) => Kind::Choice(choice.names()),
             Slot::Vector(..) => Kind::Vector,
             Slot::Scale(..) => Kind::Scale,
             Slot::Points(..) => Kind::Points,
@@ -73,7 +87,7 @@ impl Slot<'_> {
             | Slot::Vector(_, range)
             | Slot::Scale(_, range)
             | Slot::Points(_, range) => Some(*range),
-            Slot::Flag(_) | Slot::Material(_) | Slot::Mesh { .. } => None,
+            Slot::Flag(_) | Slot::Choice(_) | Slot::Material(_) | Slot::Mesh { .. } => None,
         }
     }
 
@@ -88,6 +102,7 @@ impl Slot<'_> {
             Slot::Whole(n, _) => n.to_string(),
             Slot::Pair([a, b], _) => format!("[{a}, {b}]"),
             Slot::Flag(on) => on.to_string(),
+            Slot::Choice(choice) => quoted(choice.names()[choice.chosen()]),
             Slot::Vector(v, _) => vector(v),
             Slot::Scale(v, _) => one_or_three(v.to_array(), v.to_array().map(f64::to_bits)),
             Slot::Points(points, _) => {
@@ -118,6 +133,7 @@ impl Slot<'_> {
             Slot::Flag(on) => {
                 **on = value.get_ref().as_bool().ok_or_else(|| target.wrong_type(value))?;
             }
+            Slot::Choice(choice) => choice.choose(target.choice(value, choice.names())?),
             Slot::Vector(v, _) => **v = DVec3::from(target.three(value)?),
             Slot::Scale(v, _) => **v = DVec3::from(target.one_or_three(value)?),
             Slot::Points(points, _) => **points = target.points(value)?,
@@ -142,6 +158,7 @@ impl Slot<'_> {
             Slot::Whole(n, range) => **n = another(**n, *range, |x| x as u32),
             Slot::Pair(pair, range) => pair[0] = another(pair[0], *range, |x| x as u32),
             Slot::Flag(on) => **on = !**on,
+            Slot::Choice(choice) => choice.choose((choice.chosen() + 1) % choice.names().len()),
             Slot::Vector(v, range) | Slot::Scale(v, range) => v.x = another(v.x, *range, |x| x),
             Slot::Points(points, range) => {
                 for point in points.iter_mut() {
@@ -168,7 +185,10 @@ impl Slot<'_> {
         let three = |v: &DVec3| v.to_array().into_iter().enumerate().find(bad);
         match self {
             Slot::Coefficient(rgb, _) => rgb.0.map(f64::from).into_iter().enumerate().find(bad),
-            Slot::Single(x, _) => Some((0, f64::from(**x))).filter(bad),
+            Slot::Single(x, range) => {
+                let narrow = range.narrow();
+                Some((0, f64::from(**x))).filter(|(_, x)| !narrow.contains(*x))
+            }
             Slot::Number(x, _) => Some((0, **x)).filter(bad),
             Slot::Whole(n, _) => Some((0, f64::from(**n))).filter(bad),
             Slot::Pair(pair, _) => pair.map(f64::from).into_iter().enumerate().find(bad),
@@ -176,7 +196,7 @@ impl Slot<'_> {
             Slot::Points(points, _) => {
                 points.iter().flat_map(DVec3::to_array).enumerate().find(bad)
             }
-            Slot::Flag(_) | Slot::Material(_) | Slot::Mesh { .. } => None,
+            Slot::Flag(_) | Slot::Choice(_) | Slot::Material(_) | Slot::Mesh { .. } => None,
         }
     }
 

@@ -143,6 +143,20 @@ impl Target<'_> {
         Ok([self.whole(a)?, self.whole(b)?])
     }
 
+    /// Index of the name among `names`.
+    pub(super) fn choice(
+        &self,
+        value: &Spanned<DeValue<'_>>,
+        names: &[&str],
+    ) -> Result<usize, Mistake> {
+        let name = value.get_ref().as_str().ok_or_else(|| self.wrong_type(value))?;
+        names.iter().position(|known| *known == name).ok_or_else(|| Mistake {
+            span: value.span(),
+            message: format!("there is no {} `{name}`", self.key),
+            help: suggestion(name, "known names", names.iter().copied()),
+        })
+    }
+
     pub(super) fn material(
         &self,
         value: &Spanned<DeValue<'_>>,

@@ -48,7 +48,7 @@ pub struct Pixels {
 /// frontier lives. So are the pixels.
 pub fn cost(session: &mut Session, path: &str) -> Option<Cost> {
     let altered = path::altered(session.scene(), path)?;
-    Some(match Knob::between(session.scene(), &altered) {
+    Some(match knob(session.scene(), &altered) {
         Some(knob) => knob.cost(session),
         None => cost_of(session, &altered),
     })
@@ -58,11 +58,16 @@ pub fn cost(session: &mut Session, path: &str) -> Option<Cost> {
 /// only the whole picture's frontier can tell.
 pub fn cost_of_preview(session: &mut Session, path: &str) -> Option<Cost> {
     let altered = path::altered(session.scene(), path)?;
-    let knob = Knob::between(session.scene(), &altered);
-    knob.is_none().then(|| match cost_of(session, &altered) {
+    knob(session.scene(), &altered).is_none().then(|| match cost_of(session, &altered) {
         Cost::Reread(_) | Cost::Regrow(_) => Cost::TraceAll,
         cost => cost,
     })
+}
+
+/// What may bring a branch to life, unless everything is traced anyway.
+fn knob(scene: &Scene, altered: &Scene) -> Option<Knob> {
+    let moves_rays = Change::between(scene, altered).moves_rays.is_some();
+    Knob::between(scene, altered).filter(|_| !moves_rays)
 }
 
 /// The cost of an edit that brings no branch to life.

@@ -10,6 +10,7 @@ use crate::geometry::Geometry;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::scene::factor::{Factor, FactorValues};
+use crate::scene::model::{Measure, Model, Peak};
 use crate::shade::terms::{TermProgram, TermValues};
 
 /// All that is known of a pixel.
@@ -60,10 +61,23 @@ pub struct InspectedLight {
     pub blocked: bool,
     /// N·L.
     pub n_dot_l: f32,
-    /// R·V.
-    pub r_dot_v: f32,
+    /// Which cosine the highlight depends on.
+    pub base: Base,
+    /// That cosine, 0 where there is no highlight.
+    pub cosine: f32,
     /// Materials crossed.
     pub crossed: Vec<u16>,
+}
+
+/// What a highlight is a power, or a distribution, of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Base {
+    /// R·V: Phong.
+    Mirrored,
+    /// N·H: all other models.
+    Halfway,
+    /// T·L: Hall's, of a light behind the surface.
+    Through,
 }
 
 /// Memory for the trees of a pixel and its fifteen neighbours.
@@ -89,7 +103,7 @@ pub fn pixel(
     let samples = scene.trace.samples;
     let covered = layout.covered(place.tile, place.block);
     let before = covered[..place.lane].iter().filter(|c| **c).count() as u32 * samples;
-    let mut walk = Walk { reader: trees.read(0), geometry };
+    let mut walk = Walk { reader: trees.read(0), geometry, scene };
     for _ in 0..before {
         walk.sample();
     }
@@ -107,12 +121,12 @@ fn terms(
     lane: usize,
     names: &Names,
 ) -> (Vec<TermShare>, Rgb) {
-    let shininess: Vec<_> = scene.materials.iter().map(|m| Some(m.shininess)).collect();
+    let peaks: Vec<_> = scene.materials.iter().map(|m| Some(Peak::of(m))).collect();
     let mut folder = Folder::default();
     folder.begin_tile();
     folder.block(&mut trees.read(0), covered, scene.trace.samples, names);
     let weight = 1.0 / scene.trace.samples as f32;
-    let folded = folder.finish_tile(weight, &shininess);
+    let folded = folder.finish_tile(weight, &peaks);
     let mut values = TermValues::default();
     values.evaluate(&TermProgram::new(folded.trie), &FactorValues::new(scene));
     let block = folded.tile.block(0);
@@ -138,6 +152,7 @@ fn terms(
 struct Walk<'a> {
     reader: Reader<'a>,
     geometry: &'a Geometry,
+    scene: &'a Scene,
 }
 
 impl Walk<'_> {
@@ -149,7 +164,7 @@ impl Walk<'_> {
     /// The next tree. A tree is at most 64 deep, and so is the recursion.
     fn node(&mut self) -> InspectedNode {
         let node = self.reader.node();
-        let lights = (0..node.lights).map(|_| self.light()).collect();
+        let lights = (0..node.lights).map(|_| self.light(node.material)).collect();
         let reflected = self.branch(node.ends.reflected());
         let transmitted = self.branch(node.ends.transmitted());
         InspectedNode {
@@ -176,13 +191,25 @@ impl Walk<'_> {
         materials
     }
 
-    fn light(&mut self) -> InspectedLight {
+    fn light(&mut self, material: u16) -> InspectedLight {
         let (hit, crossed) = self.reader.light();
+        let material = &self.scene.materials[material as usize];
+        let base = match material.model {
+            _ if hit.is_behind() => Base::Through,
+            Model::Phong => Base::Mirrored,
+            Model::Blinn | Model::CookTorrance | Model::Hall => Base::Halfway,
+        };
+        let cosine = match Peak::of(material).measure {
+            _ if hit.weight == 0.0 => 0.0,
+            Measure::Cosine => 1.0 - hit.angle,
+            Measure::Tangent => 1.0 / (1.0 + hit.angle).sqrt(),
+        };
         InspectedLight {
             light: hit.light,
             blocked: hit.crossed == BLOCKED,
             n_dot_l: hit.n_dot_l,
-            r_dot_v: 1.0 - hit.one_minus_r_dot_v,
+            base,
+            cosine,
             crossed: self.materials(crossed),
         }
     }

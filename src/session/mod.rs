@@ -29,6 +29,7 @@ use crate::math::exposure_factor;
 use crate::progress::Progress;
 use crate::scene::change::Change;
 use crate::scene::factor::FactorValues;
+use crate::scene::model::Peak;
 use crate::scene::{Material, Scene};
 use crate::shade::cpu::{self, Tiles};
 use crate::shade::terms::{TermProgram, TermValues};
@@ -141,6 +142,8 @@ pub struct Session {
     canvas: Canvas,
     /// Per light the key of its records in the trees.
     keys: Vec<u16>,
+    /// Keys of all records in the trees: also of lights that are gone.
+    keys_in_trees: Vec<u16>,
     /// Which factors stand for the scene's solids and lights in the matrix.
     names: Names,
     /// Per material the index of refraction with which its nodes stand in the trees: another one than
@@ -193,6 +196,7 @@ impl Session {
         let mut session = Session {
             canvas: Canvas::new(scene.picture.size),
             keys: (0..).take(scene.lights.len()).collect(),
+            keys_in_trees: (0..).take(scene.lights.len()).collect(),
             names: Names::new(geometry.materials(), scene.lights.len()),
             iors: scene.materials.iter().map(|m| m.ior).collect(),
             scene,
@@ -357,21 +361,21 @@ impl Session {
         kept.map(|&before| self.names.lights[before as usize]).collect()
     }
 
-    /// Folds the highlights of some materials again and marks the tiles that show them.
+    /// Folds the highlights of some materials again and marks the tiles that they change.
     fn refold(&mut self, scene: &Scene, materials: &[u16], marks: &mut [bool]) {
         if materials.is_empty() {
             return;
         }
-        let mut exponents = vec![None; scene.materials.len()];
+        let mut peaks = vec![None; scene.materials.len()];
         for &m in materials {
-            exponents[m as usize] = Some(scene.materials[m as usize].shininess);
+            peaks[m as usize] = Some(Peak::of(&scene.materials[m as usize]));
         }
         let weight = 1.0 / self.transport.samples as f32;
         let tiles = self.transport.tiles.par_iter_mut().zip(marks);
         self.pool.install(|| {
             tiles.for_each_init(HighlightPower::default, |power, (tile, mark)| {
                 // Without lists its pixels are grown again.
-                *mark |= tile.highlights.is_some() && power.refold(tile, &exponents, weight);
+                *mark |= tile.highlights.is_some() && power.refold(tile, &peaks, weight);
             });
         });
     }

@@ -73,7 +73,11 @@ impl Session {
         let trie = &self.transport.trie;
         let count = trie.nodes().len();
         let (mut nodes, stale) = (change.nodes.clone(), self.stale(scene, change));
-        nodes.extend(self.gone(change));
+        let gone = self.gone(change);
+        if !gone.is_empty() {
+            reason.get_or_insert_with(|| "a material is gone".into());
+            nodes.extend(gone);
+        }
         if !stale.is_empty() {
             reason.get_or_insert_with(|| "ior moves rays".into());
             casts = true;
@@ -141,7 +145,7 @@ impl Session {
 
     /// The value of every factor in the new scene, under the names of the matrix of today.
     fn factors_after(&self, scene: &Scene, change: &Change) -> FactorValues {
-        if change.keeps_materials() {
+        if change.keeps_materials() && self.iors.len() <= change.materials.len() {
             return FactorValues::new(scene);
         }
         let mut renamed = Scene { materials: self.scene.materials.clone(), ..scene.clone() };

@@ -25,6 +25,7 @@ use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::scene::change::Change;
 use crate::scene::factor::FactorValues;
+use crate::scene::model::Peak;
 use crate::shade::cpu;
 use crate::shade::terms::{TermProgram, TermValues};
 
@@ -89,7 +90,7 @@ impl Session {
     /// Keys of the new scene's lights: a light that is new or elsewhere has a new one.
     fn keys_after(&mut self, change: &Change) -> Vec<u16> {
         let old = &self.keys;
-        let mut free = (0..=u16::MAX).filter(|key| !old.contains(key));
+        let mut free = (0..=u16::MAX).filter(|key| !self.keys_in_trees.contains(key));
         let key = |before: &Option<u16>| match before {
             Some(before) => old[*before as usize],
             None => free.next().expect("fewer lights than keys"),
@@ -135,6 +136,9 @@ impl Session {
         self.merge(patches);
         (self.scene, self.geometry) = (regrow.scene.clone(), regrow.geometry.clone());
         (self.keys, self.names) = (regrow.keys.clone(), regrow.names.clone());
+        if change.shadows {
+            self.keys_in_trees = self.keys.clone();
+        }
         self.iors = regrow.iors_after.clone();
         self.program = TermProgram::new(&self.transport.trie);
         self.release_to_budget();
@@ -289,8 +293,8 @@ impl Regrow {
             folder.block(&mut grown.read(0), covered, samples, &self.names);
             trees.push_grown(grown, grower.keys());
         }
-        let shininess: Vec<_> = self.scene.materials.iter().map(|m| Some(m.shininess)).collect();
-        let folded = folder.finish_tile(1.0 / samples as f32, &shininess);
+        let peaks: Vec<_> = self.scene.materials.iter().map(|m| Some(Peak::of(m))).collect();
+        let folded = folder.finish_tile(1.0 / samples as f32, &peaks);
         let bytes = self.kept.fetch_add(trees.bytes(), Relaxed);
         let fits = trees.is_whole() && bytes + trees.bytes() <= self.budget;
         Ok(Patch {

@@ -18,6 +18,7 @@ use crate::forest::tree::TileTrees;
 use crate::geometry::Geometry;
 use crate::progress::{Cancelled, Progress};
 use crate::scene::Scene;
+use crate::scene::model::Peak;
 
 /// What a trace may keep.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -207,7 +208,7 @@ struct Job<'a> {
     names: Names,
     layout: Layout,
     samples: u32,
-    shininess: Vec<Option<f32>>,
+    peaks: Vec<Option<Peak>>,
     progress: &'a Progress,
     next: AtomicUsize,
     slots: Vec<Mutex<Slot>>,
@@ -307,7 +308,7 @@ impl<'a> Job<'a> {
             names: Names::new(geometry.materials(), scene.lights.len()),
             layout,
             samples: scene.trace.samples,
-            shininess: scene.materials.iter().map(|m| Some(m.shininess)).collect(),
+            peaks: scene.materials.iter().map(|m| Some(Peak::of(m))).collect(),
             progress,
             next: AtomicUsize::new(0),
             slots: (0..layout.tiles()).map(slot).collect(),
@@ -378,7 +379,7 @@ impl<'a> Job<'a> {
     /// The tile's part of the matrix, in ids of the picture's trie.
     fn finish_tile(&self, folder: &mut Folder) -> TransportTile {
         let weight = 1.0 / self.samples as f32;
-        let folded = folder.finish_tile(weight, &self.shininess);
+        let folded = folder.finish_tile(weight, &self.peaks);
         let mut tile = folded.tile;
         if self.kept == Kept::Matrix {
             tile.highlights = None;

@@ -8,11 +8,14 @@ use eframe::egui::{CentralPanel, Context, Frame, Margin, Panel, Popup, Ui, Vec2,
 use super::Setup;
 use super::command::Command;
 use super::files::Files;
+use super::handles::{Handles, Stage};
 use super::inspector::{Known, Outcome, Selection, inspector_ui, paths};
 use super::menu::{MenuState, menu_ui};
+use super::mixer::Mixer;
 use super::notice::Notices;
-use super::outline::outline_ui;
+use super::outline::{Lists, outline_ui};
 use super::picture::PictureView;
+use super::rename::Renaming;
 use super::status::status_ui;
 use super::style;
 use crate::document::recovery::Recovery;
@@ -36,6 +39,12 @@ pub struct App {
     pub(super) files: Files,
     /// Where unsaved work is kept; `None` if there is no such place, which was said.
     pub(super) recovery: Option<Recovery>,
+    /// Index of the solid that was clicked or selected last.
+    pub(super) picked: Option<usize>,
+    /// The name that is being changed, if one is.
+    pub(super) renaming: Option<Renaming>,
+    handles: Handles,
+    pub(super) mixer: Mixer,
     /// The selection whose costs are watched, and how many solids and materials the scene had.
     watched: Option<Vec<String>>,
     /// A gesture of the wheel lasts until then.
@@ -82,6 +91,10 @@ impl App {
             notices,
             files: Files::new(setup.folders, setup.dialogs),
             recovery,
+            picked: None,
+            renaming: None,
+            handles: Handles::default(),
+            mixer: Mixer::default(),
             watched: None,
             wheel_until: None,
             view: Vec2::ZERO,
@@ -104,11 +117,15 @@ impl App {
         let mut edited = self.document.scene().clone();
         let mut changed = false;
         self.bars(ui, &mut commands);
-        let outcome = self.panels(ui, &mut edited);
+        let step = self.mixer_ui(ui, &mut edited, &mut changed);
+        let outcome = self.panels(ui, &mut edited, &mut commands);
         changed |= self.apply_outcome(outcome, &mut edited);
         changed |= self.picture_ui(ui, &mut edited);
         if changed {
             self.commit(edited);
+        }
+        if let Some(step) = step {
+            self.document.name_step(step);
         }
         self.end_gesture(&ctx);
         self.modals(&ctx);
@@ -154,7 +171,7 @@ impl App {
         // A text field has an undo of its own.
         let typing = ctx.text_edit_focused();
         // Escape closes an open menu first.
-        let open = Popup::is_any_open(ctx);
+        let open = Popup::is_any_open(ctx) || self.renaming.is_some();
         let own = |c: &Command| typing && matches!(c, Command::Undo | Command::Redo);
         let taken = |c: &Command| ((focused || open) && plain(c)) || own(c);
         let usable = Command::WITH_SHORTCUTS.into_iter().filter(|c| !taken(c));
@@ -171,8 +188,13 @@ impl App {
         let before = self.settings.clone();
         let bar = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(8, 4));
         Panel::top("menu").frame(bar).show(ui, |ui| {
-            let state =
-                MenuState { document: &self.document, camera_tool: self.picture.camera_tool };
+            let state = MenuState {
+                document: &self.document,
+                camera_tool: self.picture.camera_tool,
+                handles: !self.handles.hidden,
+                mixer: self.mixer.open,
+                subject: self.subject(),
+            };
             commands.extend(menu_ui(ui, &state, &mut self.settings));
         });
         if self.settings != before {
@@ -191,19 +213,49 @@ impl App {
         });
     }
 
+    /// The light mixer, if it is open; what the step is called, if it is more than it seems.
+    fn mixer_ui(&mut self, ui: &mut Ui, edited: &mut Scene, changed: &mut bool) -> Option<String> {
+        if !self.mixer.open {
+            return None;
+        }
+        let panel = Panel::bottom("mixer").resizable(true).default_size(130.0).min_size(60.0);
+        let costs = self.live.costs();
+        let outcome = panel.show(ui, |ui| self.mixer.ui(ui, &mut edited.lights, &costs)).inner;
+        self.mixer.open = !outcome.close;
+        self.select(outcome.select);
+        *changed |= outcome.changed;
+        outcome.step
+    }
+
+    fn select(&mut self, selection: Option<Selection>) {
+        if let Some(selection) = selection {
+            self.selection = selection;
+        }
+        if let Some(Selection::Solid(i)) = selection {
+            self.picked = Some(i);
+        }
+    }
+
     /// Outline and inspector.
-    fn panels(&mut self, ui: &mut Ui, edited: &mut Scene) -> Outcome {
+    fn panels(&mut self, ui: &mut Ui, edited: &mut Scene, commands: &mut Vec<Command>) -> Outcome {
         self.selection = self.selection.within(edited);
+        self.renaming.take_if(|field| !field.is_in(edited));
         let outline = Panel::left("outline").default_size(180.0).min_size(120.0);
-        let chosen = outline.show(ui, |ui| outline_ui(ui, edited, self.selection)).inner;
+        let mut lists = Lists { subject: self.subject(), renaming: &mut self.renaming };
+        let listed = outline.show(ui, |ui| outline_ui(ui, edited, &mut lists)).inner;
         let inspector = Panel::right("inspector").default_size(440.0).min_size(380.0);
         let inspected = inspector.show(ui, |ui| {
             let costs = self.live.costs();
-            let known = Known { saved: self.document.saved_scene(), costs: &costs };
+            let saved = self.document.saved_scene();
+            let known = Known { saved, costs: &costs, picked: self.picked };
             inspector_ui(ui, edited, self.selection, &known)
         });
         let mut outcome = inspected.inner;
-        outcome.select = outcome.select.or(chosen);
+        outcome.select = outcome.select.or(listed.select);
+        commands.extend(listed.command.or(outcome.command));
+        if let Some(left) = listed.renamed {
+            outcome.changed |= self.renamed(left, edited);
+        }
         outcome
     }
 
@@ -216,40 +268,51 @@ impl App {
                 Err(error) => self.notices.error(error.to_string()),
             }
         }
-        if let Some(selection) = outcome.select {
-            self.selection = selection;
-        }
+        self.select(outcome.select);
         changed
     }
 
-    /// The picture; whether the camera was moved.
+    /// The picture and the handles in it; whether the camera or a light was moved.
     fn picture_ui(&mut self, ui: &mut Ui, edited: &mut Scene) -> bool {
-        let outcome = CentralPanel::no_frame()
+        let (outcome, handled) = CentralPanel::no_frame()
             .show(ui, |ui| {
                 self.view = ui.available_size();
+                let view = ui.available_rect_before_wrap();
                 let outcome = self.picture.ui(ui, &mut edited.camera);
+                let place = self.picture.place(view, ui.pixels_per_point());
+                let costs = self.live.costs();
+                let stage = Stage::new(edited, [place, view], self.selection, &costs);
+                let handled = self.handles.ui(ui, &stage, &mut edited.lights);
                 self.notices.ui(ui);
-                outcome
+                (outcome, handled)
             })
             .inner;
-        if let Some(point) = outcome.clicked
-            && let Some(picked) = self.live.pick(point)
-        {
-            let solid = ui.input(|i| i.modifiers.alt);
-            self.selection = match solid {
-                true => Selection::Solid(picked.solid),
-                false => Selection::Material(picked.material),
-            };
+        self.select(handled.select);
+        if let Some(point) = outcome.clicked {
+            self.pick(point, edited, ui.input(|i| i.modifiers.alt));
         }
         if outcome.camera_moved && !ui.input(|i| i.pointer.any_down()) {
             self.wheel_until = Some(Instant::now() + WHEEL_REST);
             ui.ctx().request_repaint_after(WHEEL_REST);
         }
-        outcome.camera_moved
+        outcome.camera_moved || handled.changed
+    }
+
+    /// Selects what is seen at a point of the picture: its material, or itself.
+    fn pick(&mut self, point: [f64; 2], edited: &Scene, itself: bool) {
+        let (Some(picked), Some(shown)) = (self.live.pick(point), &self.shown) else { return };
+        self.picked = Some(picked.solid);
+        // The picture may show an earlier scene, whose materials had other indices.
+        let name = shown.scene.materials.get(picked.material).map(|material| &material.name);
+        let today = edited.materials.iter().position(|material| Some(&material.name) == name);
+        self.selection = match itself {
+            true => Selection::Solid(picked.solid),
+            false => Selection::Material(today.unwrap_or(picked.material)),
+        };
     }
 
     /// Makes an edited scene the document's, unless it makes no sense.
-    fn commit(&mut self, edited: Scene) {
+    pub(super) fn commit(&mut self, edited: Scene) {
         match flaw(self.document.scene(), &edited) {
             Some(message) => self.notices.error(message),
             None => {
@@ -290,6 +353,14 @@ impl App {
             Command::ZoomIn => self.picture.zoom_by(1.25, self.view, dots),
             Command::ZoomOut => self.picture.zoom_by(0.8, self.view, dots),
             Command::CameraTool => self.picture.camera_tool = !self.picture.camera_tool,
+            Command::Handles => self.handles.hidden = !self.handles.hidden,
+            Command::Mixer => self.mixer.open = !self.mixer.open,
+            Command::AddLight
+            | Command::AddMaterial
+            | Command::Duplicate
+            | Command::Rename
+            | Command::Delete
+            | Command::Assign => self.run_on_things(command),
             Command::Stop => self.live.cancel(),
             Command::Resume => self.live.resume(),
             Command::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
@@ -304,7 +375,11 @@ impl App {
 
     /// Asks for the costs of what the inspector shows.
     fn watch_costs(&mut self) {
-        let wanted = paths(self.document.scene(), self.selection.within(self.document.scene()));
+        let scene = self.document.scene();
+        let mut wanted = paths(scene, self.selection.within(scene));
+        wanted.extend(self.subject().assigned_path(scene));
+        wanted.extend(self.mixer.paths(scene));
+        wanted.extend(self.handles.hovered.clone());
         if self.watched.as_ref() != Some(&wanted) {
             self.live.watch_costs(wanted.clone());
             self.watched = Some(wanted);

@@ -23,6 +23,18 @@ pub(super) enum Command {
     Undo,
     /// Does it again.
     Redo,
+    /// Adds a light.
+    AddLight,
+    /// Adds a material.
+    AddMaterial,
+    /// Copies the selected light or material.
+    Duplicate,
+    /// Gives the selected light or material another name.
+    Rename,
+    /// Takes the selected light or material out.
+    Delete,
+    /// Gives the selected material to the solid clicked last.
+    Assign,
     /// The whole picture in the window.
     Fit,
     /// One pixel of the picture on one pixel of the screen.
@@ -33,6 +45,10 @@ pub(super) enum Command {
     ZoomOut,
     /// Whether dragging in the picture moves the camera.
     CameraTool,
+    /// Whether the lights have handles in the picture.
+    Handles,
+    /// Whether the light mixer shows.
+    Mixer,
     /// Stops the running trace or export.
     Stop,
     /// Traces what a stop left out.
@@ -54,11 +70,19 @@ impl Command {
             Command::Quit => "Quit",
             Command::Undo => "Undo",
             Command::Redo => "Redo",
+            Command::AddLight => "Add light",
+            Command::AddMaterial => "Add material",
+            Command::Duplicate => "Duplicate",
+            Command::Rename => "Rename",
+            Command::Delete => "Delete",
+            Command::Assign => "Assign to picked solid",
             Command::Fit => "Fit",
             Command::ActualSize => "1:1",
             Command::ZoomIn => "Zoom in",
             Command::ZoomOut => "Zoom out",
             Command::CameraTool => "Move camera",
+            Command::Handles => "Light handles",
+            Command::Mixer => "Light mixer",
             Command::Stop => "Stop",
             Command::Resume => "Trace now",
         }
@@ -76,6 +100,12 @@ impl Command {
             Command::Quit => "Closes the window",
             Command::Undo => "Takes the latest change back",
             Command::Redo => "Makes the change again that was taken back last",
+            Command::AddLight => "Adds a white light at the upper left of the picture",
+            Command::AddMaterial => "Adds a matt white material, which no solid uses yet",
+            Command::Duplicate => "Adds a copy under another name",
+            Command::Rename => "Changes the name here and wherever the scene file uses it",
+            Command::Delete => "Takes it out of the scene; a material must not be in use",
+            Command::Assign => "Gives this material to the solid that was clicked last",
             Command::Fit => "Shows the whole picture",
             Command::ActualSize => "Shows one picture pixel on one pixel of the screen",
             Command::ZoomIn => "Enlarges the picture; or turn the wheel over it",
@@ -83,6 +113,8 @@ impl Command {
             Command::CameraTool => {
                 "Drag orbits, Shift-drag pans, the wheel dollies; every move traces the picture anew"
             }
+            Command::Handles => "Handles in the picture that move and turn the lights",
+            Command::Mixer => "All lights side by side: on, solo, stops, colour, temperature",
             Command::Stop => "Stops the trace or the export; the last whole picture stays",
             Command::Resume => "Traces the picture that was stopped",
         }
@@ -105,13 +137,23 @@ impl Command {
             Command::ZoomIn => keys(Modifiers::NONE, Key::Plus),
             Command::ZoomOut => keys(Modifiers::NONE, Key::Minus),
             Command::Stop => keys(Modifiers::NONE, Key::Escape),
-            Command::New(_) | Command::OpenRecent(_) | Command::Resume => None,
+            Command::Duplicate => keys(CTRL, Key::D),
+            Command::Rename => keys(Modifiers::NONE, Key::F2),
+            Command::Delete => keys(Modifiers::NONE, Key::Delete),
+            Command::Handles => keys(Modifiers::NONE, Key::H),
+            Command::Mixer => keys(Modifiers::NONE, Key::L),
+            Command::New(_)
+            | Command::OpenRecent(_)
+            | Command::AddLight
+            | Command::AddMaterial
+            | Command::Assign
+            | Command::Resume => None,
         }
     }
 
     /// The commands with shortcuts. Those with more modifiers come first, so that Shift-Ctrl-Z is
     /// not taken for Ctrl-Z.
-    pub(super) const WITH_SHORTCUTS: [Command; 13] = [
+    pub(super) const WITH_SHORTCUTS: [Command; 18] = [
         Command::SaveAs,
         Command::Redo,
         Command::Open,
@@ -124,8 +166,17 @@ impl Command {
         Command::ZoomIn,
         Command::ZoomOut,
         Command::CameraTool,
+        Command::Duplicate,
+        Command::Rename,
+        Command::Delete,
+        Command::Handles,
+        Command::Mixer,
         Command::Stop,
     ];
+
+    /// The commands about the selected light or material.
+    pub(super) const ON_THINGS: [Command; 4] =
+        [Command::Duplicate, Command::Rename, Command::Delete, Command::Assign];
 }
 
 #[cfg(test)]

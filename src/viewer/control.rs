@@ -11,7 +11,7 @@ use super::badge::badge_ui;
 use super::hints;
 use crate::color::Rgb;
 use crate::scene::range::Range;
-use crate::scene::slot::Slot;
+use crate::scene::slot::{Choice, Slot};
 use crate::scene::value::Names;
 use crate::session::cost::Cost;
 
@@ -22,7 +22,7 @@ const FIELD: f32 = 58.0;
 /// Width of the button that unfolds channels; kept free beside other sliders, so that all align.
 const TOGGLE: f32 = 30.0;
 /// Width of the badge.
-const BADGE: f32 = 108.0;
+pub(super) const BADGE: f32 = 108.0;
 
 /// What a row shows besides its value.
 pub(super) struct Row<'a> {
@@ -131,6 +131,7 @@ fn value_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> bool {
             explained(response, row, None).changed()
         }
         Slot::Vector(v, range) | Slot::Scale(v, range) => vector_ui(ui, row, row.key, v, *range),
+        Slot::Choice(choice) => choice_ui(ui, row, *choice),
         Slot::Material(index) => material_ui(ui, row, index),
         Slot::Mesh { file, .. } => {
             let label = ui.add(Label::new(file.as_str()).truncate());
@@ -323,6 +324,22 @@ fn color_ui(ui: &mut Ui, row: &Row<'_>, color: &mut Rgb, range: Range) -> bool {
         }
     }
     changed
+}
+
+fn choice_ui(ui: &mut Ui, row: &Row<'_>, choice: &mut dyn Choice) -> bool {
+    let (names, before) = (choice.names(), choice.chosen());
+    let mut index = before;
+    let combo = ComboBox::from_id_salt(row.path).selected_text(names[before]);
+    let response = combo.width(ui.available_width()).show_ui(ui, |ui| {
+        for (i, name) in names.iter().enumerate() {
+            ui.selectable_value(&mut index, i, *name).on_hover_text(hints::choice(name));
+        }
+    });
+    explained(response.response.accessible_name(row.key), row, None);
+    if index != before {
+        choice.choose(index);
+    }
+    index != before
 }
 
 fn material_ui(ui: &mut Ui, row: &Row<'_>, index: &mut usize) -> bool {

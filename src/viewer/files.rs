@@ -251,6 +251,8 @@ impl App {
     fn replace_document(&mut self, document: Document) {
         self.document = document;
         self.selection = Selection::Scene;
+        (self.picked, self.renaming) = (None, None);
+        self.mixer.forget();
         self.show_scene();
     }
 

@@ -28,8 +28,17 @@ pub(super) fn about(key: &str) -> &'static str {
         }
         "ambient" => "Share of the ambient light that the surface shows",
         "diffuse" => "Matte light: the surface's colour under each light (Lambert)",
-        "specular" => "Strength of the highlights (Phong)",
-        "shininess" => "Phong's exponent: higher makes highlights smaller",
+        "model" => "How highlights spread: Phong, Blinn, Cook-Torrance or Hall",
+        "specular" => "Strength of the highlights",
+        "shininess" => {
+            "Exponent of Phong, Blinn and Hall: higher makes highlights smaller (Blinn's and \
+             Hall's are as wide as Phong's at four times the exponent)"
+        }
+        "roughness" => "Slope of the facets of Cook-Torrance: higher makes highlights larger",
+        "fresnel" => {
+            "Whether reflect and transmit depend on the angle and ior as in nature: more is \
+             mirrored at grazing angles"
+        }
         "metallic" => "0: white highlights; 1: highlights in the colour of the surface",
         "emission" => "Light that the surface gives off by itself",
         "reflect" => "Share of the mirror image",
@@ -54,6 +63,19 @@ pub(super) fn about(key: &str) -> &'static str {
         "translate" => "Moves the solid, after scale and turn",
         "scale" => "Makes the solid larger or smaller, first of all",
         "file" => "The mesh file; it can be changed in the scene file",
+        _ => "",
+    }
+}
+
+/// What choosing the thing of this name does.
+pub(super) fn choice(name: &str) -> &'static str {
+    match name {
+        "phong" => "Highlights around the mirrored lights: (R·V)^shininess",
+        "blinn" => "Highlights that stretch at grazing angles: (N·H)^shininess",
+        "cook_torrance" => "Highlights of rough facets: roughness and ior shape them",
+        "hall" => {
+            "Blinn's highlights weighted by Fresnel, lights shining through, Fresnel's mirror"
+        }
         _ => "",
     }
 }
@@ -92,6 +114,7 @@ pub(super) fn scale(key: &str, range: Range, value: f64) -> Scale {
 mod tests {
     use super::*;
     use crate::scene::fields::{LENSES, PLACES, SHAPES};
+    use crate::scene::model::Model;
     use crate::scene::path::parameters;
     use crate::scene::{Lens, Light, LightPlace, Material, Paint, Scene, Shape, Solid};
 
@@ -115,6 +138,14 @@ mod tests {
             }
         }
         assert_eq!(about("no such key"), "");
+    }
+
+    #[test]
+    fn every_choice_is_explained() {
+        for name in Model::NAMES {
+            assert!(!choice(name).is_empty(), "{name}");
+        }
+        assert_eq!(choice("no such name"), "");
     }
 
     #[test]

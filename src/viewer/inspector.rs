@@ -2,9 +2,13 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use eframe::egui::{RichText, ScrollArea, Ui};
+use eframe::egui::{Button, RichText, ScrollArea, Ui};
 
-use super::control::{Row, control_ui};
+use super::badge::badge_ui;
+use super::command::Command;
+use super::control::{BADGE, Row, control_ui};
+use super::lists::{Subject, offer_ui};
+use crate::document::things::{Thing, users};
 use crate::scene::Scene;
 use crate::scene::fields::{self, Need, Visit};
 use crate::scene::slot::Slot;
@@ -24,7 +28,25 @@ pub(super) enum Selection {
     Solid(usize),
 }
 
+impl From<Thing> for Selection {
+    fn from(thing: Thing) -> Selection {
+        match thing {
+            Thing::Light(i) => Selection::Light(i),
+            Thing::Material(i) => Selection::Material(i),
+        }
+    }
+}
+
 impl Selection {
+    /// The light or material that is selected.
+    pub(super) fn thing(self) -> Option<Thing> {
+        match self {
+            Selection::Light(i) => Some(Thing::Light(i)),
+            Selection::Material(i) => Some(Thing::Material(i)),
+            Selection::Scene | Selection::Solid(_) => None,
+        }
+    }
+
     /// The same selection, or the whole scene if there is no such thing in it.
     pub(super) fn within(self, scene: &Scene) -> Selection {
         let exists = match self {
@@ -120,6 +142,8 @@ pub(super) struct Known<'a> {
     pub(super) saved: &'a Scene,
     /// Costs by path.
     pub(super) costs: &'a BTreeMap<String, Cost>,
+    /// Index of the solid that was clicked or selected last.
+    pub(super) picked: Option<usize>,
 }
 
 /// What the person did in the inspector.
@@ -131,6 +155,8 @@ pub(super) struct Outcome {
     pub(super) assignments: Vec<(String, String)>,
     /// Another selection.
     pub(super) select: Option<Selection>,
+    /// A button was pressed.
+    pub(super) command: Option<Command>,
 }
 
 /// Shows the controls of a selection, which write into `scene`.
@@ -144,6 +170,7 @@ pub(super) fn inspector_ui(
     ui.add_space(4.0);
     ui.heading(selection.title(scene));
     links_ui(ui, scene, selection, &mut outcome);
+    things_ui(ui, scene, selection, known, &mut outcome);
     ui.separator();
     let names = Names::of(&scene.materials);
     let saved = texts(known.saved, same_name(scene, known.saved, selection));
@@ -164,13 +191,70 @@ pub(super) fn inspector_ui(
 
 /// Ways from what is selected to what belongs to it.
 fn links_ui(ui: &mut Ui, scene: &Scene, selection: Selection, outcome: &mut Outcome) {
-    let Selection::Solid(i) = selection else { return };
-    let material = scene.solids[i].material;
-    let name = &scene.materials[material].name;
-    let link = ui.link(format!("Material {name}")).on_hover_text("Shows this material");
-    if link.clicked() {
-        outcome.select = Some(Selection::Material(material));
+    match selection {
+        Selection::Solid(i) => {
+            let material = scene.solids[i].material;
+            let name = &scene.materials[material].name;
+            let link = ui.link(format!("Material {name}")).on_hover_text("Shows this material");
+            if link.clicked() {
+                outcome.select = Some(Selection::Material(material));
+            }
+        }
+        Selection::Material(i) => {
+            let users = users(scene, i);
+            ui.horizontal_wrapped(|ui| {
+                if users.is_empty() {
+                    ui.weak("No solid is made of it");
+                }
+                for &solid in users.iter().take(MOST_LINKS) {
+                    let link = ui.link(format!("Solid {}", scene.solids[solid].name));
+                    if link.on_hover_text("Shows this solid").clicked() {
+                        outcome.select = Some(Selection::Solid(solid));
+                    }
+                }
+                if users.len() > MOST_LINKS {
+                    ui.weak(format!("and {} more", users.len() - MOST_LINKS));
+                }
+            });
+        }
+        Selection::Scene | Selection::Light(_) => {}
     }
+}
+
+/// Most solids of a material that are linked to.
+const MOST_LINKS: usize = 6;
+
+/// What can be done with the whole light or material.
+fn things_ui(
+    ui: &mut Ui,
+    scene: &Scene,
+    selection: Selection,
+    known: &Known<'_>,
+    outcome: &mut Outcome,
+) {
+    if selection.thing().is_none() {
+        return;
+    }
+    let subject = Subject { selection, picked: known.picked };
+    ui.horizontal_wrapped(|ui| {
+        for command in [Command::Duplicate, Command::Rename, Command::Delete] {
+            let offer = subject.offer(command, scene);
+            if offer_ui(ui, command, Button::new(command.name()), &offer).clicked() {
+                outcome.command = Some(command);
+            }
+        }
+        let Selection::Material(_) = selection else { return };
+        let offer = subject.offer(Command::Assign, scene);
+        let button = Button::new(offer.name.clone());
+        if offer_ui(ui, Command::Assign, button, &offer).clicked() {
+            outcome.command = Some(Command::Assign);
+        }
+        if offer.refusal.is_none()
+            && let Some(path) = subject.assigned_path(scene)
+        {
+            badge_ui(ui, "assigning", known.costs.get(&path).copied(), BADGE);
+        }
+    });
 }
 
 /// The thing of the same name in another scene; the whole scene if there is none.

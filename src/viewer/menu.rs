@@ -3,8 +3,11 @@
 use eframe::egui::{Align, Button, Label, Layout, MenuBar, Ui};
 
 use super::command::Command;
+use super::inspector::Selection;
+use super::lists::{Subject, offer_ui};
 use crate::document::settings::{Settings, Theme};
 use crate::document::{Document, TEMPLATES};
+use crate::scene::Scene;
 
 /// What the menu needs to know.
 pub(super) struct MenuState<'a> {
@@ -12,6 +15,12 @@ pub(super) struct MenuState<'a> {
     pub(super) document: &'a Document,
     /// Whether drags move the camera.
     pub(super) camera_tool: bool,
+    /// Whether the lights have handles.
+    pub(super) handles: bool,
+    /// Whether the light mixer shows.
+    pub(super) mixer: bool,
+    /// What commands about lights and materials are about.
+    pub(super) subject: Subject,
 }
 
 /// Shows the menu bar and its buttons; gives the command that was chosen. Theme and zoom are set at
@@ -28,10 +37,10 @@ pub(super) fn menu_ui(
             .on_hover_text("Open, save, export");
         ui.menu_button("Edit", |ui| edit_menu(ui, state, &mut chosen))
             .response
-            .on_hover_text("Undo and redo");
-        ui.menu_button("View", |ui| view_menu(ui, settings, &mut chosen))
+            .on_hover_text("Undo and redo; lights and materials");
+        ui.menu_button("View", |ui| view_menu(ui, state, settings, &mut chosen))
             .response
-            .on_hover_text("Size of the picture, colours of the window");
+            .on_hover_text("Size of the picture, lights, colours of the window");
         ui.separator();
         for (command, name) in [(Command::Undo, "Undo"), (Command::Redo, "Redo")] {
             let step = step(state.document, command);
@@ -47,9 +56,13 @@ pub(super) fn menu_ui(
                 chosen = Some(command);
             }
         }
-        let camera = Button::selectable(state.camera_tool, Command::CameraTool.name());
-        if ui.add(camera).on_hover_text(Command::CameraTool.about()).clicked() {
-            chosen = Some(Command::CameraTool);
+        for (command, on) in
+            [(Command::CameraTool, state.camera_tool), (Command::Mixer, state.mixer)]
+        {
+            let button = Button::selectable(on, command.name());
+            if ui.add(button).on_hover_text(command.about()).clicked() {
+                chosen = Some(command);
+            }
         }
         title_ui(ui, state.document);
     });
@@ -117,13 +130,51 @@ fn edit_menu(ui: &mut Ui, state: &MenuState<'_>, chosen: &mut Option<Command>) {
             .map_or_else(|| command.name().to_owned(), |step| format!("{} {step}", command.name()));
         ui.add_enabled_ui(step.is_some(), |ui| labelled_item(ui, command, &name, chosen));
     }
+    ui.separator();
+    item(ui, Command::AddLight, chosen);
+    item(ui, Command::AddMaterial, chosen);
+    ui.separator();
+    things_ui(ui, state.subject, state.document.scene(), chosen);
 }
 
-fn view_menu(ui: &mut Ui, settings: &mut Settings, chosen: &mut Option<Command>) {
+/// The commands about a light or a material, as items of a menu.
+pub(super) fn things_ui(
+    ui: &mut Ui,
+    subject: Subject,
+    scene: &Scene,
+    chosen: &mut Option<Command>,
+) {
+    let is_light = matches!(subject.selection, Selection::Light(_));
+    for command in Command::ON_THINGS {
+        if is_light && command == Command::Assign {
+            continue;
+        }
+        let offer = subject.offer(command, scene);
+        if offer_ui(ui, command, with_keys(ui, command, &offer.name), &offer).clicked() {
+            *chosen = Some(command);
+            ui.close();
+        }
+    }
+}
+
+fn view_menu(
+    ui: &mut Ui,
+    state: &MenuState<'_>,
+    settings: &mut Settings,
+    chosen: &mut Option<Command>,
+) {
     for command in [Command::Fit, Command::ActualSize, Command::ZoomIn, Command::ZoomOut] {
         item(ui, command, chosen);
     }
     item(ui, Command::CameraTool, chosen);
+    ui.separator();
+    for (command, on) in [(Command::Handles, state.handles), (Command::Mixer, state.mixer)] {
+        let button = with_keys(ui, command, command.name()).selected(on);
+        if ui.add(button).on_hover_text(command.about()).clicked() {
+            *chosen = Some(command);
+            ui.close();
+        }
+    }
     ui.separator();
     for (theme, name) in
         [(Theme::System, "As the system"), (Theme::Light, "Light"), (Theme::Dark, "Dark")]
@@ -147,13 +198,19 @@ fn item(ui: &mut Ui, command: Command, chosen: &mut Option<Command>) {
 }
 
 fn labelled_item(ui: &mut Ui, command: Command, name: &str, chosen: &mut Option<Command>) {
-    let mut button = Button::new(name);
-    if let Some(shortcut) = command.shortcut() {
-        button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
-    }
+    let button = with_keys(ui, command, name);
     let response = ui.add(button).on_disabled_hover_text(command.about());
     if response.on_hover_text(command.about()).clicked() {
         *chosen = Some(command);
         ui.close();
+    }
+}
+
+/// A button with the keys that do the same.
+fn with_keys<'a>(ui: &Ui, command: Command, name: &str) -> Button<'a> {
+    let button = Button::new(name.to_owned());
+    match command.shortcut() {
+        Some(shortcut) => button.shortcut_text(ui.ctx().format_shortcut(&shortcut)),
+        None => button,
     }
 }

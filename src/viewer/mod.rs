@@ -2,21 +2,26 @@
 
 mod app;
 mod badge;
+mod carry;
 mod command;
 mod control;
 pub mod dialog;
 mod export;
 mod files;
+mod handles;
 mod hints;
 mod inspector;
+mod lists;
 pub mod measure;
 mod menu;
+mod mixer;
 mod modal;
 mod navigate;
 mod notice;
 mod outline;
 mod path_field;
 mod picture;
+mod rename;
 mod start;
 mod status;
 mod style;

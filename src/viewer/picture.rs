@@ -120,8 +120,8 @@ impl PictureView {
         }
     }
 
-    /// Where the picture lies, in points.
-    fn place(&self, view: Rect, pixels_per_point: f32) -> Rect {
+    /// Where the picture lies in the space `view`, in points.
+    pub(super) fn place(&self, view: Rect, pixels_per_point: f32) -> Rect {
         let scale = self.scale(view.size(), pixels_per_point) / pixels_per_point;
         let corner = view.center() - self.center.to_vec2() * scale;
         // At 1:1 the pixels of the picture lie on those of the screen.

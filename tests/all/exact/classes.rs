@@ -4,12 +4,12 @@ use std::path::Path;
 
 use rayforest::color::Rgb;
 use rayforest::progress::Progress;
-use rayforest::scene::path::parameters;
+use rayforest::scene::path::{Parameter, parameters};
 use rayforest::scene::{Lens, Light, Material, Paint, Scene, read};
 use rayforest::session::{Class, Session};
 
 use super::comes_alive::comes_alive;
-use super::table::{ROWS, Row, SCENE};
+use super::table::{GLOSSY, MODELS, ROWS, Row, SCENE};
 use super::{assert_same_picture, open, set};
 
 fn all_kinds() -> Scene {
@@ -20,6 +20,15 @@ fn all_kinds() -> Scene {
 fn parallel() -> Scene {
     let mut scene = all_kinds();
     scene.camera.lens = Lens::Parallel { height: 4.5 };
+    scene
+}
+
+/// The same with other illumination models.
+fn glossy() -> Scene {
+    let mut scene = all_kinds();
+    for (path, value) in MODELS {
+        set(&mut scene, path, value);
+    }
     scene
 }
 
@@ -80,18 +89,33 @@ fn hold_to_table(scene: &Scene) {
     let first = open(scene, 2);
     for parameter in parameters(scene) {
         let row = row_of(ROWS, &parameter.path).unwrap_or_else(|e| panic!("{e}"));
-        let mut session = open(scene, 2);
-        for (step, (value, class)) in row.steps.iter().enumerate() {
-            let original = *value == "@";
-            let value = if original { parameter.value.as_str() } else { value };
-            let what = format!("{} = {value} (step {step})", parameter.path);
-            let mut edited = session.scene().clone();
-            set(&mut edited, &parameter.path, value);
-            edit_is(&mut session, edited, *class, &what);
-            if original {
-                assert_same_picture(&session, &first, &format!("{what}, the first picture"));
-            }
+        take_steps(&first, &parameter, row);
+    }
+}
+
+/// Takes one parameter through the steps of its row, from `first` on.
+fn take_steps(first: &Session, parameter: &Parameter, row: &Row) {
+    let mut session = open(first.scene(), 2);
+    for (step, (value, class)) in row.steps.iter().enumerate() {
+        let original = *value == "@";
+        let value = if original { parameter.value.as_str() } else { value };
+        let what = format!("{} = {value} (step {step})", parameter.path);
+        let mut edited = session.scene().clone();
+        set(&mut edited, &parameter.path, value);
+        edit_is(&mut session, edited, *class, &what);
+        if original {
+            assert_same_picture(&session, first, &format!("{what}, the first picture"));
         }
+    }
+}
+
+#[test]
+fn models_decide_what_their_parameters_cost() {
+    let first = open(&glossy(), 2);
+    let all = parameters(first.scene());
+    for row in GLOSSY {
+        let parameter = all.iter().find(|p| p.path == row.path).expect("a parameter of the row");
+        take_steps(&first, parameter, row);
     }
 }
 

@@ -57,6 +57,7 @@ fn value(parameter: &Parameter, scene: &Scene, random: &mut Random) -> Option<St
             random.pick(&["0", "0.0005", "0.00392", "0.004", "0.05", "0.4", "1"]).to_owned()
         }
         (Kind::Number, "ior") => random.pick(&["1", "1.33", "1.7", "0.8"]).to_owned(),
+        (Kind::Number, "roughness") => random.pick(&["0.02", "0.1", "0.3", "1"]).to_owned(),
         (Kind::Number, _) => near(&parameter.value, random.unit() * 0.2)?,
         (Kind::Whole, "samples") => (1 + random.below(4)).to_string(),
         (Kind::Whole, "depth") => random.below(13).to_string(),
@@ -69,6 +70,7 @@ fn value(parameter: &Parameter, scene: &Scene, random: &mut Random) -> Option<St
             format!("[{}]", numbers.join(", "))
         }
         (Kind::Scale, _) => format!("{:.2}", 0.8 + 0.4 * random.unit()),
+        (Kind::Choice(names), _) => random.pick(names).to_owned(),
         (Kind::Material, _) => scene.materials[random.below(scene.materials.len())].name.clone(),
         (Kind::Pair, "size") => random.pick(&["[33, 18]", "[20, 21]", "[40, 9]"]).to_owned(),
         _ => return None,
@@ -171,7 +173,11 @@ fn same_file(a: &Path, b: &Path) -> bool {
 
 /// Random histories of a shipped scene.
 fn wander(name: &str, size: [u32; 2], samples: u32) {
-    let first = shipped(name, size, samples);
+    wander_from(name, shipped(name, size, samples));
+}
+
+/// Random histories of a scene.
+fn wander_from(name: &str, first: Scene) {
     assert!(largest_tree(&first) < LARGEST_TREE, "{name} could not be edited at all");
     let mut classes = Vec::new();
     for seed in 0..histories() {
@@ -199,6 +205,23 @@ fn wander(name: &str, size: [u32; 2], samples: u32) {
 #[test]
 fn whitted() {
     wander("whitted", [64, 36], 4);
+}
+
+/// Every illumination model, with and without Fresnel.
+#[test]
+fn models() {
+    let mut scene = shipped("whitted", [64, 36], 4);
+    for (path, value) in [
+        ("materials.tiles.model", "blinn"),
+        ("materials.tiles.specular", "0.4"),
+        ("materials.glass.model", "hall"),
+        ("materials.mirror.model", "cook_torrance"),
+        ("materials.mirror.reflect", "0.9"),
+        ("materials.mirror.fresnel", "true"),
+    ] {
+        path::set(&mut scene, path, value).unwrap();
+    }
+    wander_from("models", scene);
 }
 
 #[test]

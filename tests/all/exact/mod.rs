@@ -8,6 +8,7 @@ mod floors;
 mod histories;
 mod memory;
 pub(crate) mod random;
+mod regrows;
 mod stopped;
 mod table;
 mod threads;

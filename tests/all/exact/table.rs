@@ -72,6 +72,17 @@ ring = { knot = { turns = [2, 3], tube = 0.3, segments = [30, 8] }, material = "
 flake = { sphereflake = { center = [-1.15, -1.5, 0.8], radius = 0.3, levels = 2 }, material = "mirror" }
 "#;
 
+/// What of [`SCENE`] is another illumination model, for [`GLOSSY`].
+pub(super) const MODELS: [(&str, &str); 7] = [
+    ("materials.plain.model", "blinn"),
+    ("materials.glass.model", "hall"),
+    ("materials.lamp.model", "hall"),
+    ("materials.lamp.specular", "0.5"),
+    ("materials.brass.model", "cook_torrance"),
+    ("materials.brass.reflect", "1"),
+    ("materials.brass.fresnel", "true"),
+];
+
 /// A parameter and what some values of it, set one after another, cost. `*` stands for any name,
 /// `@` for the value it had at first. A value that it has already costs nothing and stands for
 /// `Class::None`.
@@ -186,6 +197,13 @@ pub(super) const ROWS: &[Row] = &[
         &[("0", Reshade), ("0.5", Reshade), ("1", Reshade), ("@", Reshade)],
     ),
     row("materials.*.shininess", EXPONENT),
+    // Only Cook-Torrance has facets.
+    row("materials.*.roughness", &[("0.02", Nothing), ("1", Nothing), ("@", Nothing)]),
+    row(
+        "materials.*.model",
+        &[("blinn", Retrace), ("cook_torrance", Retrace), ("hall", Retrace), ("@", Retrace)],
+    ),
+    row("materials.*.fresnel", &[("true", Retrace), ("@", Retrace)]),
     row("materials.glass.ior", &[("1", Regrow), ("0.8", Regrow), ("2.4", Regrow), ("@", Regrow)]),
     // Nothing passes through the others, so nothing is bent.
     row("materials.*.ior", &[("1", Nothing), ("0.8", Nothing), ("2.4", Nothing), ("@", Nothing)]),
@@ -275,4 +293,35 @@ pub(super) const ROWS: &[Row] = &[
     row("solids.flake.sphereflake.center", VECTOR),
     row("solids.flake.sphereflake.radius", LENGTH),
     row("solids.flake.sphereflake.levels", &[("1", Retrace), ("3", Retrace), ("@", Retrace)]),
+];
+
+/// Parameters of [`SCENE`] with [`MODELS`] whose cost the model decides.
+pub(super) const GLOSSY: &[Row] = &[
+    // Where Fresnel leaves too little, no parameter but the cut-off lets a branch live.
+    row("trace.cutoff", &[("0.5", Retrace), ("0.0001", Retrace), ("0", Retrace), ("@", Retrace)]),
+    row("materials.plain.shininess", EXPONENT),
+    row("materials.glass.shininess", EXPONENT),
+    row("materials.lamp.shininess", EXPONENT),
+    row("materials.brass.shininess", &[("1", Nothing), ("@", Nothing)]),
+    row(
+        "materials.brass.roughness",
+        &[("0.02", Refold), ("0.1", Refold), ("1", Refold), ("@", Refold)],
+    ),
+    row("materials.glass.roughness", &[("1", Nothing), ("@", Nothing)]),
+    row("materials.brass.model", &[("hall", Retrace), ("@", Retrace)]),
+    row("materials.brass.fresnel", &[("false", Retrace), ("@", Retrace)]),
+    row("materials.glass.fresnel", &[("true", Retrace), ("@", Retrace)]),
+    row(
+        "materials.glass.transmit",
+        &[("0.4", Reshade), ("0", Reshade), ("[0, 0.8, 0]", Reshade), ("@", Reshade)],
+    ),
+    row("materials.glass.specular", COLOR),
+    row("materials.brass.ior", &[("1", Regrow), ("2.4", Regrow), ("@", Regrow)]),
+    row("materials.plain.ior", &[("2.4", Nothing), ("@", Nothing)]),
+    row("materials.brass.reflect", &[("0.5", Reshade), ("0", Reshade), ("@", Reshade)]),
+    // Hall's model shows lights behind the screen as soon as it transmits anything.
+    row(
+        "materials.lamp.transmit",
+        &[("0.004", Regrow), ("0", Reshade), ("0.004", Reshade), ("@", Reshade)],
+    ),
 ];

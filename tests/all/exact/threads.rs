@@ -3,6 +3,7 @@
 use rayforest::forest::kept::KeptTrees;
 use rayforest::forest::tree::TileTrees;
 use rayforest::progress::Progress;
+use rayforest::scene::model::Model;
 use rayforest::session::{Class, Session};
 
 use super::{SHIPPED, assert_same_picture, open, set, shipped};
@@ -47,6 +48,40 @@ fn a_refold_is_a_fresh_fold_on_every_scene() {
         let fresh = open(&scene, 2);
         assert!(session.transport() == fresh.transport(), "{name}: refolded, not as folded");
         assert_same_picture(&session, &fresh, name);
+    }
+}
+
+#[test]
+fn a_refold_is_a_fresh_fold_in_every_model() {
+    for &model in Model::NAMES {
+        let mut scene = shipped("whitted", [70, 40], 3);
+        // The glass between them: the others' highlights are weighted where they are seen in it.
+        set(&mut scene, "materials.glass.fresnel", "true");
+        for material in ["glass", "mirror", "tiles"] {
+            set(&mut scene, &format!("materials.{material}.model"), model);
+            set(&mut scene, &format!("materials.{material}.specular"), "0.5");
+        }
+        let mut session = open(&scene, 2);
+        let groups = |session: &Session| {
+            let tiles = session.transport().tiles.iter();
+            let lists = tiles.flat_map(|t| &t.highlights).flat_map(|h| h.groups.clone());
+            let weighted: Vec<bool> = lists.map(|g| g.weighted).collect();
+            [weighted.contains(&false), weighted.contains(&true)]
+        };
+        let plain = matches!(model, "phong" | "blinn");
+        assert_eq!(groups(&session), [plain, true], "{model}: lists without and with weights");
+        let key = if model == "cook_torrance" { "roughness" } else { "shininess" };
+        for value in ["0.9", "0.02", "0.25"] {
+            for material in ["glass", "mirror"] {
+                set(&mut scene, &format!("materials.{material}.{key}"), value);
+            }
+            let report = session.edit(scene.clone(), &Progress::default()).unwrap();
+            assert_eq!((report.class, report.rays.total()), (Class::Refold, 0), "{model}");
+            validate(&session);
+            let fresh = open(&scene, 2);
+            assert!(session.transport() == fresh.transport(), "{model}: not as folded afresh");
+            assert_same_picture(&session, &fresh, model);
+        }
     }
 }
 

@@ -3,12 +3,14 @@
 //!
 //! `I = kloc·I_local + reflect·I_reflected + transmit·filter·I_refracted`, with
 //! `I_local = emission + ambient·O·Ia + Σ lights·Π(transmit·filter)·[diffuse·O·max(0, N·L) +
-//! specular·tint·max(0, R·V)^n]`.
+//! specular·tint·highlight]`, where Fresnel, if asked for, weighs what is reflected and refracted,
+//! and Hall's model also shows lights behind a surface, with transmit·filter for the tint.
 
 use glam::DVec3;
 
 use rayforest::color::Rgb;
 use rayforest::progress::Progress;
+use rayforest::scene::model::Model;
 use rayforest::scene::path::{self, Parameter};
 use rayforest::scene::{Material, Paint, Scene};
 use rayforest::session::{Class, Session};
@@ -63,13 +65,15 @@ struct Evaluator<'a> {
 #[derive(Clone, Copy)]
 struct Path {
     weight: DVec3,
+    /// Product of Fresnel's reflectances: the same rule, but no parameter counts.
+    geometric: f64,
     depth: u32,
 }
 
 impl Evaluator<'_> {
     fn sample(&mut self, tree: Option<&Tree>) -> DVec3 {
         match tree {
-            Some(tree) => self.light(tree, Path { weight: DVec3::ONE, depth: 0 }),
+            Some(tree) => self.light(tree, Path { weight: DVec3::ONE, geometric: 1.0, depth: 0 }),
             None => rgb(self.scene.background.color),
         }
     }
@@ -79,11 +83,15 @@ impl Evaluator<'_> {
         let m = &scene.materials[tree.material];
         let (reflect, transmit) = (rgb(m.reflect), rgb(m.transmit));
         let mirror = if tree.total { (reflect + transmit).min(DVec3::ONE) } else { reflect };
+        let f = tree.fresnel;
+        let weighed = m.fresnel || m.model == Model::Hall;
+        assert_eq!(f.is_some(), weighed, "reflectance where the material asks for it");
+        let passed = transmit * rgb(m.filter);
+        let towards = |by: f64| Path { geometric: path.geometric * by, ..path };
+        let (through_mirror, through) = (f.unwrap_or(1.0), f.map_or(1.0, |f| 1.0 - f));
         rgb(m.kloc) * local(scene, tree, m)
-            + mirror * self.limb(&tree.reflected, mirror, path)
-            + transmit
-                * rgb(m.filter)
-                * self.limb(&tree.transmitted, transmit * rgb(m.filter), path)
+            + through_mirror * mirror * self.limb(&tree.reflected, mirror, towards(through_mirror))
+            + through * passed * self.limb(&tree.transmitted, passed, towards(through))
     }
 
     /// What comes back along a branch: nothing if it is dead under the present scene.
@@ -111,10 +119,15 @@ impl Evaluator<'_> {
         }
         let weight = path.weight * factor.min(DVec3::ONE);
         let cutoff = f64::from(self.scene.trace.cutoff);
-        if cutoff > 0.0 {
-            self.margin = self.margin.min((weight.max_element() / cutoff - 1.0).abs());
+        if path.geometric < cutoff.max(2f64.powi(-60)) {
+            return None;
         }
-        (weight.max_element() >= cutoff).then_some(Path { weight, depth: path.depth + 1 })
+        if cutoff > 0.0 {
+            let margin = |weight: f64| (weight / cutoff - 1.0).abs();
+            self.margin = self.margin.min(margin(weight.max_element()));
+            self.margin = self.margin.min(margin(path.geometric));
+        }
+        (weight.max_element() >= cutoff).then_some(Path { weight, depth: path.depth + 1, ..path })
     }
 }
 
@@ -132,19 +145,26 @@ fn local(scene: &Scene, tree: &Tree, m: &Material) -> DVec3 {
 fn lamp(scene: &Scene, lit: &Lit, m: &Material, o: DVec3) -> DVec3 {
     let light = &scene.lights[lit.light];
     let Some(crossed) = &lit.crossed else { return DVec3::ZERO };
-    if !light.on || lit.n_dot_l <= 0.0 {
+    let behind = lit.n_dot_l <= 0.0 && lit.weight > 0.0;
+    if !light.on || (lit.n_dot_l <= 0.0 && !behind) {
         return DVec3::ZERO;
     }
     let through = crossed.iter().map(|&m| &scene.materials[m]);
     let shadow: DVec3 = through.map(|m| rgb(m.transmit) * rgb(m.filter)).product();
     let metallic = f64::from(m.metallic);
     let tint = DVec3::splat(1.0 - metallic) + o * metallic;
-    let cosine = (1.0 - lit.one_minus_r_dot_v).max(0.0);
-    let highlight = if cosine > 0.0 { cosine.powf(m.shininess.into()) } else { 0.0 };
+    let spread = match m.model {
+        Model::CookTorrance => {
+            let slope = f64::from(m.roughness).powi(-2);
+            slope * (-lit.angle * slope).exp()
+        }
+        _ => (1.0 - lit.angle).powf(m.shininess.into()),
+    };
+    let tint = if behind { rgb(m.transmit) * rgb(m.filter) } else { tint };
     rgb(light.color)
         * rgb(light.intensity)
         * shadow
-        * (rgb(m.diffuse) * o * lit.n_dot_l + rgb(m.specular) * tint * highlight)
+        * (rgb(m.diffuse) * o * lit.n_dot_l.max(0.0) + rgb(m.specular) * tint * lit.weight * spread)
 }
 
 fn rgb(color: Rgb) -> DVec3 {
@@ -191,7 +211,12 @@ impl Dice {
 
 /// A new value for a parameter that an edit without rays may change, `None` for others and for most
 /// of those. Path factors stay within `reach` times what was traced.
-fn new_value(original: &Parameter, dice: &mut Dice, reach: f64) -> Option<String> {
+fn new_value(
+    original: &Parameter,
+    dice: &mut Dice,
+    reach: f64,
+    by_parameters_alone: bool,
+) -> Option<String> {
     let Parameter { path, value, .. } = original;
     let key = path.rsplit('.').next().unwrap_or_default();
     if dice.roll() < 0.6 {
@@ -212,10 +237,14 @@ fn new_value(original: &Parameter, dice: &mut Dice, reach: f64) -> Option<String
             _ => scaled(value, &[0; 3].map(|_| reach * dice.roll())),
         },
         "shininess" => format!("{}", 1000f64.powf(dice.roll())),
+        "roughness" => format!("{}", 0.02f64.powf(dice.roll())),
         "metallic" => format!("{}", dice.roll()),
         "on" => format!("{}", dice.roll() < 0.7),
         "depth" => format!("{}", (value.parse::<f64>().ok()? * (0.5 + 0.5 * dice.roll())).floor()),
-        "cutoff" => format!("{}", value.parse::<f64>().ok()? * (1.0 + 4.0 * dice.roll())),
+        // With Fresnel what is cut off by geometry is not in the terms.
+        "cutoff" if by_parameters_alone => {
+            format!("{}", value.parse::<f64>().ok()? * (1.0 + 4.0 * dice.roll()))
+        }
         _ => return None,
     })
 }
@@ -231,10 +260,32 @@ fn scaled(value: &str, by: &[f64; 3]) -> String {
 /// The scene with some of its parameters changed.
 fn edited(now: &Scene, originals: &[Parameter], dice: &mut Dice, reach: f64) -> Scene {
     let mut scene = now.clone();
+    let alone = !scene.materials.iter().any(Material::weighs_branches);
     for original in originals {
-        if let Some(value) = new_value(original, dice, reach) {
+        if let Some(value) = new_value(original, dice, reach, alone) {
             path::set(&mut scene, &original.path, &value).unwrap_or_else(|error| panic!("{error}"));
         }
+    }
+    scene
+}
+
+/// The name of a scene that is not shipped: whitted's, in other illumination models.
+const MODELS: &str = "models";
+
+/// A shipped scene, or [`MODELS`].
+fn scene(name: &str) -> Scene {
+    if name != MODELS {
+        return shipped(name);
+    }
+    let mut scene = shipped("whitted");
+    for (path, value) in [
+        ("materials.tiles.model", "blinn"),
+        ("materials.tiles.specular", "0.4"),
+        ("materials.glass.model", "hall"),
+        ("materials.mirror.model", "cook_torrance"),
+        ("materials.mirror.fresnel", "true"),
+    ] {
+        path::set(&mut scene, path, value).unwrap_or_else(|error| panic!("{error}"));
     }
     scene
 }
@@ -244,8 +295,9 @@ fn every_shipped_scene_is_what_the_formulas_say_as_traced_and_after_edits() {
     let mut dice = Dice(1);
     let mut dead = 0;
     let mut seen = [0; 3];
-    for name in shipped_names() {
-        let mut session = open(shipped(&name));
+    let names = shipped_names().into_iter().chain([MODELS.to_owned()]);
+    for name in names {
+        let mut session = open(scene(&name));
         let originals = path::parameters(session.scene());
         let trees = pixels(&session);
         assert_eq!(

@@ -1,7 +1,9 @@
 //! The tracer against closed forms: uniform surroundings, facing mirrors, refraction, shadows.
 
 mod corridor;
+mod fresnel;
 mod furnace;
+mod models;
 mod refraction;
 mod shadow;
 

@@ -11,6 +11,8 @@ pub(super) struct Tree {
     pub(super) primitive: u32,
     pub(super) material: usize,
     pub(super) slot: usize,
+    /// Fresnel's reflectance, if it weighs the branches.
+    pub(super) fresnel: Option<f64>,
     /// Whether the mirror ray is that of total reflection.
     pub(super) total: bool,
     pub(super) lights: Vec<Lit>,
@@ -22,7 +24,10 @@ pub(super) struct Tree {
 pub(super) struct Lit {
     pub(super) light: usize,
     pub(super) n_dot_l: f64,
-    pub(super) one_minus_r_dot_v: f64,
+    /// 1 − cosine, or tan² α of Cook-Torrance's facets.
+    pub(super) angle: f64,
+    /// What multiplies the highlight; 0 if there is none.
+    pub(super) weight: f64,
     /// The materials that the shadow ray crossed; `None`: something opaque stood in its way.
     pub(super) crossed: Option<Vec<usize>>,
 }
@@ -31,7 +36,7 @@ pub(super) struct Lit {
 pub(super) enum Limb {
     Grown(Box<Tree>),
     Missed,
-    /// Not followed: its factor is zero, or its weight, or the depth limit, forbade it.
+    /// Not followed: its factor is zero, or a weight, or the depth limit, forbade it.
     Cut(Branch),
     Absent,
 }
@@ -94,6 +99,7 @@ impl Cursor<'_> {
             primitive: node.primitive,
             material: node.material.into(),
             slot: node.slot.into(),
+            fresnel: (node.fresnel >= 0.0).then_some(node.fresnel.into()),
             total: node.ends.total(),
             lights,
             reflected,
@@ -114,7 +120,8 @@ impl Cursor<'_> {
         Lit {
             light: hit.light.into(),
             n_dot_l: hit.n_dot_l.into(),
-            one_minus_r_dot_v: hit.one_minus_r_dot_v.into(),
+            angle: hit.angle.into(),
+            weight: hit.weight.into(),
             crossed: (!blocked).then_some(materials),
         }
     }
@@ -124,7 +131,7 @@ impl Cursor<'_> {
             Branch::Grown => Limb::Grown(Box::new(self.tree())),
             Branch::Missed => Limb::Missed,
             Branch::Absent => Limb::Absent,
-            Branch::Zero | Branch::Weight | Branch::Depth => Limb::Cut(branch),
+            Branch::Zero | Branch::Weight | Branch::Depth | Branch::Faint => Limb::Cut(branch),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use rayforest::color::Rgb;
 use rayforest::scene::Paint;
+use rayforest::scene::model::Model;
 
 use super::*;
 use crate::faces::SCENE;
@@ -139,4 +140,20 @@ fn a_coefficient_unfolds_into_its_channels_and_back() {
     assert!(red == green && green == blue && (0.6..0.7).contains(&red), "{red}");
     window.click("channels of diffuse");
     assert!(window.harness.query_by_role_and_label(Role::Slider, "diffuse green").is_none());
+}
+
+#[test]
+fn an_illumination_model_is_chosen_from_a_list() {
+    let mut window = Window::with_scene(SCENE, Vec::new());
+    let mirror = |window: &Window| window.app().document().scene().materials[1].clone();
+    window.click("mirror");
+    assert_eq!(mirror(&window).model, Model::Phong);
+    window.click("model");
+    window.click("cook_torrance");
+    assert_eq!(mirror(&window).model, Model::CookTorrance);
+    window.until_exact();
+    window.save();
+    assert!(rgb(&window.picture()) == rendered(window.folder.path(), "scene.toml"));
+    window.click("Undo");
+    assert_eq!(mirror(&window).model, Model::Phong);
 }

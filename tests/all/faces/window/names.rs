@@ -150,6 +150,34 @@ fn every_control_of_the_panels_has_a_name_and_a_tooltip() {
 }
 
 #[test]
+fn every_control_of_the_mixer_has_a_name_and_a_tooltip() {
+    let mut window = tall();
+    let before = window.controls();
+    window.key(Modifiers::NONE, Key::L);
+    window.harness.run_steps(3);
+    // What moved to make room is not new.
+    let mut others = window.controls();
+    others.retain(|control| before.iter().any(|old| old.name == control.name));
+    window.walk(&others, 15);
+}
+
+#[test]
+fn every_item_of_the_menu_of_a_line_has_a_name_and_a_tooltip() {
+    let mut window = tall();
+    for (line, least) in [("mirror", 4), ("fill", 3)] {
+        window.click(line);
+        let before = window.controls();
+        window.right_click(line);
+        window.walk(&before, least);
+        window.key(Modifiers::NONE, Key::Escape);
+    }
+    window.key(Modifiers::NONE, Key::F2);
+    window.harness.run_steps(3);
+    let field = window.controls().into_iter().find(|control| control.role == Role::TextInput);
+    assert_eq!(field.expect("a field").name, "name of light fill");
+}
+
+#[test]
 fn every_control_of_the_colour_picker_has_a_name() {
     let mut window = tall();
     window.click("mirror");
@@ -168,8 +196,8 @@ fn every_item_of_the_menus_has_a_name_and_a_tooltip() {
     let mut window = tall();
     let paths: [(&[&str], usize); 5] = [
         (&["File"], 7),
-        (&["Edit"], 2),
-        (&["View"], 12),
+        (&["Edit"], 8),
+        (&["View"], 14),
         (&["File", "New"], 3),
         (&["File", "Open recent"], 1),
     ];

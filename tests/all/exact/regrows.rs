@@ -1,0 +1,339 @@
+//! Random histories of edits that grow trees again: every state is the picture of a fresh trace.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+
+use rayforest::film::layout::{LANES, Place, TILE_BLOCKS};
+use rayforest::forest::kept::{KeptStart, KeptTrees};
+use rayforest::progress::Progress;
+use rayforest::scene::change::Change;
+use rayforest::scene::{Light, LightPlace, Material, Paint, Scene};
+use rayforest::session::plan::Plan;
+use rayforest::session::trace::TraceError;
+use rayforest::session::{Class, Options, Session, Work};
+
+use super::random::Random;
+use super::{assert_same_picture, open, options, set, shipped};
+
+const EDITS: usize = 30;
+
+/// Histories per scene.
+fn histories() -> u64 {
+    if std::env::var_os("RAYFOREST_LONG").is_some() { 40 } else { 2 }
+}
+
+/// The scene with something changed that asks for no new camera rays, and the change in words.
+fn edited(scene: &Scene, random: &mut Random) -> (Scene, String) {
+    let mut edited = scene.clone();
+    let lights = scene.lights.len();
+    let material = random.below(scene.materials.len());
+    let name = scene.materials[material].name.clone();
+    let weights = ["0", "0.003", "0.02", "0.3", "[0.5, 0, 0.2]", "0.8", "1.2"];
+    let words = match random.below(14) {
+        0 if lights > 0 => {
+            let light = &mut edited.lights[random.below(lights)];
+            let by = glam::DVec3::new(random.unit(), random.unit(), random.unit()) - 0.4;
+            match &mut light.place {
+                LightPlace::Point(place) | LightPlace::Direction(place) => *place += by,
+            }
+            format!("{} moved by {by}", light.name)
+        }
+        1 if lights < 4 => {
+            let at = random.below(lights + 1);
+            edited.lights.insert(at, Light::new(&format!("light-{}", random.below(1000))));
+            format!("a light at {at}")
+        }
+        2 if lights > 0 => format!("{} gone", edited.lights.remove(random.below(lights)).name),
+        3 => {
+            let solid = random.below(scene.solids.len());
+            edited.solids[solid].material = material;
+            format!("solid {solid} of {name}")
+        }
+        4 => {
+            let ior = [1.0, 1.2, 1.5, 2.4, 0.8][random.below(5)];
+            edited.materials[material].ior = ior;
+            format!("ior of {name} {ior}")
+        }
+        5 | 6 => set_to(&mut edited, &format!("materials.{name}.transmit"), random.pick(&weights)),
+        7 | 8 => set_to(&mut edited, &format!("materials.{name}.reflect"), random.pick(&weights)),
+        9 => set_to(&mut edited, "trace.depth", random.pick(&["0", "1", "2", "4", "5"])),
+        10 => set_to(&mut edited, "trace.cutoff", random.pick(&["0.0039", "0.02", "0.3"])),
+        11 => {
+            let size = 0.4 + random.unit();
+            edited.materials[material].paint = match &scene.materials[material].paint {
+                Paint::Solid(color) => Paint::Checker { a: *color, b: *color * 0.5, size },
+                Paint::Checker { a, b: _, size: _ } => Paint::Solid(*a),
+            };
+            format!("another texture of {name}")
+        }
+        12 => {
+            set_to(&mut edited, &format!("materials.{name}.shininess"), random.pick(&["3", "40"]))
+        }
+        _ => {
+            let used = |m: usize| scene.solids.iter().any(|solid| solid.material == m);
+            if used(material) {
+                edited.materials.push(Material::new(&format!("new-{}", random.below(1000))));
+                "a material more".into()
+            } else {
+                edited.materials.remove(material);
+                for solid in edited.solids.iter_mut().filter(|solid| solid.material > material) {
+                    solid.material -= 1;
+                }
+                format!("{name} gone")
+            }
+        }
+    };
+    (edited, words)
+}
+
+fn set_to(scene: &mut Scene, path: &str, value: &str) -> String {
+    set(scene, path, value);
+    format!("{path} = {value}")
+}
+
+/// What is planned for an edit.
+fn plan(session: &mut Session, scene: &Scene) -> Option<Plan> {
+    // A session that can shade the scene at once does: a twin is asked.
+    match session.class_of(scene) {
+        Class::Refold | Class::Regrow => {}
+        _ => return None,
+    }
+    if Change::between(session.scene(), scene).moves_rays.is_none()
+        && session.class_of(scene) == Class::Refold
+    {
+        return None;
+    }
+    match session.edit_without_rays(&Arc::new(scene.clone())) {
+        Err(Work::Regrow(plan)) => Some(plan),
+        other => panic!("{other:?} is not a plan"),
+    }
+}
+
+/// The part of a tile's trees that belongs to one block, without where it lies in the tile.
+fn block_of(trees: &KeptTrees, block: usize) -> impl PartialEq + use<> {
+    let [from, to]: [KeptStart; 2] = [trees.blocks[block], trees.blocks[block + 1]];
+    let range = |a: u32, b: u32| a as usize..b as usize;
+    (
+        trees.hits[range(from.word, to.word)].to_vec(),
+        trees.nodes[range(from.node, to.node)].to_vec(),
+        trees.lights[range(from.light, to.light)].to_vec(),
+        trees.crossings[range(from.crossing, to.crossing)].to_vec(),
+    )
+}
+
+/// Holds that trees of blocks that a plan does not name are as they were.
+fn untouched(before: &[Option<Arc<KeptTrees>>], session: &Session, plan: &Plan, what: &str) {
+    for (tile, (old, new)) in before.iter().zip(&session.forest().tiles).enumerate() {
+        let named = plan.tiles.iter().find(|planned| planned.tile == tile);
+        let (Some(old), Some(new)) = (old, new) else { continue };
+        for block in 0..TILE_BLOCKS {
+            if named.is_none_or(|planned| planned.lanes[block] == 0) {
+                let same = block_of(old, block) == block_of(new, block);
+                assert!(same, "{what}: tile {tile}, block {block} was touched");
+            }
+        }
+    }
+}
+
+/// Makes an edit, sometimes cancelled first, and holds picture, class and pixels.
+fn step(session: &mut Session, scene: &Scene, random: &mut Random, what: &str) -> Class {
+    if random.below(4) == 0 {
+        interrupt(session, scene, what);
+    }
+    let beforehand = session.class_of(scene);
+    let planned = plan(session, scene);
+    let before = session.forest().tiles.clone();
+    let whole = before.iter().all(Option::is_some);
+    let report = session.edit(scene.clone(), &Progress::default()).unwrap();
+    let fresh = open(scene, 2);
+    assert_same_picture(session, &fresh, what);
+    session.transport().validate();
+    assert_eq!(report.class.max(Class::Refold), beforehand.max(Class::Refold), "{what}: class");
+    match &planned {
+        Some(plan) => {
+            assert_eq!(report.pixels, plan.pixels(), "{what}: pixels");
+            assert!(!whole || report.rays.camera == 0, "{what}: {:?}", report.rays);
+            assert!(report.rays.total() <= fresh.trace_report().rays.total(), "{what}");
+            untouched(&before, session, plan, what);
+        }
+        None => assert_eq!((report.pixels, report.rays.total()), (0, 0), "{what}"),
+    }
+    report.class
+}
+
+/// Begins an edit and cancels it: scene, picture and trees stay.
+fn interrupt(session: &mut Session, scene: &Scene, what: &str) {
+    let (old, frame) = (session.shared_scene(), session.frame().clone());
+    let trees = session.forest().clone();
+    let progress = Progress::default();
+    let outcome = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            std::thread::sleep(std::time::Duration::from_micros(700));
+            progress.cancel();
+        });
+        session.edit(scene.clone(), &progress)
+    });
+    if let Err(error) = outcome {
+        assert_eq!(error, TraceError::Cancelled, "{what}");
+        assert!(*session.scene() == *old && *session.frame() == frame, "{what}: cancelled");
+        assert!(*session.forest() == trees, "{what}: trees of a cancelled edit");
+    } else {
+        session.edit(old, &Progress::default()).unwrap();
+    }
+}
+
+/// Random histories of a scene, all of whose states are compared with fresh traces.
+fn wander(name: &str, first: &Scene, memory: Option<f64>) {
+    let mut classes = Vec::new();
+    for seed in 0..histories() {
+        let mut random = Random(seed << 10 | name.len() as u64);
+        let mut session = open(first, 2);
+        if let Some(share) = memory {
+            let bytes = session.kept_bytes() as f64 * share;
+            let options = Options { memory: bytes as u64, ..options(2) };
+            session = Session::open(first.clone(), options, &Progress::default()).unwrap();
+            assert!(session.forest().released() > 0, "{name}: some trees do not fit");
+        }
+        let mut told = format!("{name}, seed {seed}");
+        let mut past = vec![first.clone()];
+        for _ in 0..EDITS {
+            let (scene, words) = match random.below(5) {
+                0 => (past[random.below(past.len())].clone(), "back to an earlier state".into()),
+                _ => edited(session.scene(), &mut random),
+            };
+            told += &format!("\n  {words}");
+            classes.push(step(&mut session, &scene, &mut random, &told));
+            past.push(scene);
+        }
+    }
+    let count = |class| classes.iter().filter(|c| **c == class).count();
+    let counts = [Class::Reshade, Class::Refold, Class::Regrow, Class::Retrace].map(count);
+    eprintln!("{name}: reshade, refold, regrow, retrace: {counts:?} times");
+    assert!(counts[..3].iter().all(|&n| n > 2) && counts[3] == 0, "{name}: {counts:?}");
+}
+
+fn small(name: &str) -> Scene {
+    let mut scene = shipped(name, [56, 36], 2);
+    scene.trace.depth = 4;
+    scene
+}
+
+#[test]
+fn whitted() {
+    wander("whitted", &small("whitted"), None);
+}
+
+#[test]
+fn glass() {
+    wander("glass", &small("glass"), None);
+}
+
+#[test]
+fn gems() {
+    wander("gems", &small("gems"), None);
+}
+
+#[test]
+fn flake() {
+    wander("flake", &small("flake"), None);
+}
+
+#[test]
+fn mesh() {
+    wander("mesh", &small("mesh"), None);
+}
+
+#[test]
+fn plain() {
+    wander("plain", &small("plain"), None);
+}
+
+#[test]
+fn mirrors() {
+    wander("mirrors", &small("mirrors"), None);
+}
+
+#[test]
+fn with_released_trees() {
+    let mut scene = small("whitted");
+    set(&mut scene, "picture.size", "[130, 70]");
+    wander("released", &scene, Some(0.7));
+}
+
+#[test]
+fn a_touched_block_is_found() {
+    let mut session = open(&small("whitted"), 2);
+    let mut scene = session.scene().clone();
+    set(&mut scene, "materials.tiles.reflect", "0.4");
+    let mut planned = plan(&mut session, &scene).unwrap();
+    let before = session.forest().tiles.clone();
+    session.edit(scene, &Progress::default()).unwrap();
+    untouched(&before, &session, &planned, "all named");
+    planned.tiles.pop();
+    let look = AssertUnwindSafe(|| untouched(&before, &session, &planned, "one not"));
+    assert!(catch_unwind(look).is_err());
+}
+
+/// The pixels that are named for a branch are those whose trees lack it, and no others.
+#[test]
+fn pixels_are_named_if_and_only_if_their_trees_grow() {
+    for name in ["whitted", "glass", "mesh"] {
+        let mut session = open(&small(name), 2);
+        for path in
+            ["materials.tiles.reflect", "materials.amber.reflect", "materials.slate.reflect"]
+        {
+            let mut scene = session.scene().clone();
+            if rayforest::scene::path::set(&mut scene, path, "0.4").is_err() {
+                continue;
+            }
+            let Some(plan) = plan(&mut session, &scene) else { continue };
+            let fresh = open(&scene, 2);
+            let layout = fresh.transport().layout;
+            let (mut grown, mut named) = (0, 0);
+            for tile in 0..layout.tiles() {
+                let old = session.trees(tile, &Progress::default()).unwrap();
+                let new = fresh.trees(tile, &Progress::default()).unwrap();
+                let lanes = plan.tiles.iter().find(|t| t.tile == tile).map(|t| t.lanes.clone());
+                let (mut at, mut old_at) = (new.read(0), old.read(0));
+                for block in 0..TILE_BLOCKS {
+                    for lane in 0..LANES {
+                        if layout.pixel(Place { tile, block, lane }).is_none() {
+                            continue;
+                        }
+                        let is_named =
+                            lanes.as_ref().is_some_and(|lanes| lanes[block] >> lane & 1 != 0);
+                        let differs = (0..2)
+                            .map(|_| nodes_of(&mut at) != nodes_of(&mut old_at))
+                            .fold(false, |any, differs| any | differs);
+                        assert!(
+                            is_named || !differs,
+                            "{name} {path}: tile {tile} block {block} lane {lane} is not named"
+                        );
+                        named += u32::from(is_named);
+                        grown += u32::from(differs);
+                    }
+                }
+            }
+            assert!(grown > 0, "{name} {path}");
+            assert_eq!(named, grown, "{name} {path}: pixels named for nothing");
+        }
+    }
+}
+
+/// The next sample's nodes and the ends of their branches.
+fn nodes_of(reader: &mut rayforest::forest::tree::Reader<'_>) -> Vec<(u32, u8)> {
+    use rayforest::forest::tree::Branch;
+    let mut list = Vec::new();
+    let mut open = usize::from(reader.sample());
+    while open > 0 {
+        let node = reader.node();
+        for _ in 0..node.lights {
+            reader.light();
+        }
+        let ends = [node.ends.reflected(), node.ends.transmitted()];
+        open += ends.iter().filter(|&&end| end == Branch::Grown).count();
+        open -= 1;
+        list.push((node.primitive, ends[0] as u8 | (ends[1] as u8) << 4));
+    }
+    list
+}
