@@ -106,7 +106,9 @@ impl CacheError {
     pub fn way_out(&self) -> &'static str {
         match &self.fault {
             Fault::Absent => "open the scene without it and keep the traced picture",
-            Fault::Foreign => "the scene is traced afresh; move the file away if it is wanted",
+            Fault::Foreign => {
+                "the scene is traced afresh, the file is left alone; move it away to keep a cache here"
+            }
             Fault::Stale { .. } => "the scene is traced afresh; keep the traced picture again",
             Fault::Damaged { .. } => {
                 "the scene is traced afresh; keep the traced picture again, or delete the file"

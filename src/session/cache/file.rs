@@ -25,6 +25,8 @@ use crate::session::trace::TraceReport;
 
 /// How the file begins; the last byte is the format's version.
 pub(super) const MAGIC: &[u8; 16] = b"RAYFOREST CACHE\x01";
+/// The same without the version.
+const NAME: &[u8] = MAGIC.split_last().unwrap().1;
 /// Bytes before the header.
 pub(super) const PREFIX: usize = MAGIC.len() + 16;
 /// An array's length in a section takes as much.
@@ -225,6 +227,16 @@ pub(super) struct Scratch {
     plain: Vec<u8>,
 }
 
+/// Whether there is a file that is no cache of this program.
+pub(super) fn is_foreign(path: &Path) -> Result<bool, Fault> {
+    if !path.is_file() {
+        return Ok(false);
+    }
+    let mut begin = Vec::new();
+    File::open(path)?.take(NAME.len() as u64).read_to_end(&mut begin)?;
+    Ok(begin != NAME)
+}
+
 /// A cache file that was opened, its header sound.
 pub(super) struct Opened {
     file: Mutex<File>,
@@ -248,11 +260,10 @@ impl Opened {
         let mut prefix = Vec::new();
         Read::by_ref(&mut file).take(PREFIX as u64).read_to_end(&mut prefix)?;
         let (magic, rest) = prefix.split_at(MAGIC.len().min(prefix.len()));
-        let (name, version) = MAGIC.split_at(MAGIC.len() - 1);
-        if !magic.starts_with(name) {
+        if !magic.starts_with(NAME) {
             return Err(Fault::Foreign);
         }
-        if magic.len() == MAGIC.len() && magic[name.len()..] != *version {
+        if magic.len() == MAGIC.len() && magic != MAGIC {
             return Err(Fault::stale("it has the format of another version of the program"));
         }
         let fault = |what: Unsound| Fault::damaged("the header", what);

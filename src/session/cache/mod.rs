@@ -11,6 +11,7 @@
 mod codec;
 mod error;
 mod file;
+mod lists;
 mod open;
 mod parts;
 mod read;
@@ -24,7 +25,7 @@ use std::path::{Path, PathBuf};
 pub use error::{CacheError, Fault};
 pub use open::OpenedCache;
 pub use read::{Cached, read};
-pub use write::write;
+pub use write::{Writing, write};
 
 /// Ending of a cache's name.
 pub const ENDING: &str = "rayforest-cache";

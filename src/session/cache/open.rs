@@ -39,11 +39,24 @@ impl Session {
         let stopped = |error: TraceError| Fault::from(error).of(path);
         let pool = ThreadPoolBuilder::new().num_threads(options.threads).build();
         let pool = pool.map_err(|_| stopped(TraceError::Threads { threads: options.threads }))?;
-        let cached = read(path, &scene, &pool, options.memory, progress)?;
-        let cache = cached.report;
-        let mut session = Session::from_cached(cached, options, Arc::new(pool));
+        let pool = Arc::new(pool);
+        let (mut session, cache) = Session::recall(&scene, path, pool, options, progress)?;
         let edit = session.edit(scene, progress).map_err(stopped)?;
         Ok((session, OpenedCache { cache, edit }))
+    }
+
+    /// The session that the cache at `path` holds, for a scene that is to be opened: the difference
+    /// between the two scenes is one edit.
+    pub fn recall(
+        opened: &Scene,
+        path: &Path,
+        pool: Arc<ThreadPool>,
+        options: Options,
+        progress: &Progress,
+    ) -> Result<(Session, CacheReport), CacheError> {
+        let cached = read(path, opened, &pool, options.memory, progress)?;
+        let report = cached.report;
+        Ok((Session::from_cached(cached, options, pool), report))
     }
 
     /// The session of the cached scene, its picture drawn.
@@ -58,7 +71,7 @@ impl Session {
             trace,
             report: _,
         } = cached;
-        let State { keys, lights, iors } = state;
+        let State { keys, keys_in_trees, lights, iors } = state;
         let mut session = Session {
             canvas: Canvas::new(scene.picture.size),
             scene: Arc::new(scene),
@@ -70,6 +83,7 @@ impl Session {
             terms: TermValues::default(),
             before: Vec::new(),
             keys,
+            keys_in_trees,
             names: Names { materials: geometry.materials().to_vec(), lights },
             iors,
             trace,

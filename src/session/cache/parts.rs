@@ -3,20 +3,23 @@
 use super::codec::{Item, Section, Source, Unsound, record};
 use crate::film::layout::LANES;
 use crate::fold::transport::{
-    BlockStart, Frontier, FrontierMark, HighlightList, Highlights, Plane, Single, TransportTile,
+    BlockStart, Frontier, FrontierMark, HighlightGroup, HighlightList, Highlights, Plane, Single,
+    TransportTile,
 };
 use crate::fold::trie::{Marks, Trie, TrieNode};
 use crate::forest::grow::RayCounts;
 use crate::forest::kept::{KeptLight, KeptNode, KeptStart, KeptTrees};
 use crate::forest::tree::{Branch, Ends};
 use crate::scene::factor::{Factor, Kind};
+use crate::session::Session;
 use crate::session::trace::TraceReport;
 
 record!(TrieNode { parent: u32, factor: Factor, marks: Marks });
 record!(BlockStart { plane: u32, single: u32 });
 record!(Single { place: u32, coefficient: f32 });
 record!(FrontierMark { entry: u32, mask: u16, rays: u16 });
-record!(HighlightList { at: u32, material: u16, mask: u16 });
+record!(HighlightGroup { material: u16, weighted: bool, lists: u32, lanes: u32, samples: u32 });
+record!(HighlightList { at: u32, mask: u16, full: u16, peak: f32 });
 record!(KeptNode { t: f64, primitive: u32, lights: u16, ends: Ends });
 record!(KeptLight { key: u16, crossed: u16 });
 record!(KeptStart { word: u32, node: u32, light: u32, crossing: u32 });
@@ -67,20 +70,36 @@ impl Item for Plane {
 }
 
 /// What a session knows of its scene besides what the scene says.
+#[derive(Clone)]
 pub(super) struct State {
     /// Per light the key of its records in the trees.
     pub(super) keys: Vec<u16>,
+    /// Keys of all records in the trees: also of lights that are gone.
+    pub(super) keys_in_trees: Vec<u16>,
     /// Per light its place in the list of factors.
     pub(super) lights: Vec<u16>,
     /// Per material the index of refraction with which its nodes stand in the trees.
     pub(super) iors: Vec<f64>,
 }
 
+impl State {
+    /// What a session knows.
+    pub(super) fn of(session: &Session) -> State {
+        State {
+            keys: session.keys.clone(),
+            keys_in_trees: session.keys_in_trees.clone(),
+            lights: session.names.lights.clone(),
+            iors: session.iors.clone(),
+        }
+    }
+}
+
 /// Writes the terms and what their factors stand for.
 pub(super) fn put_terms(trie: &Trie, state: &State, out: &mut Section) {
-    let State { keys, lights, iors } = state;
+    let State { keys, keys_in_trees, lights, iors } = state;
     out.array(trie.nodes());
     out.array(keys);
+    out.array(keys_in_trees);
     out.array(lights);
     out.array(iors);
 }
@@ -88,7 +107,13 @@ pub(super) fn put_terms(trie: &Trie, state: &State, out: &mut Section) {
 /// Reads the terms and what their factors stand for.
 pub(super) fn take_terms(from: &mut Source) -> Result<(Trie, State), Unsound> {
     let trie = Trie::from_canonical(from.array::<TrieNode>()?).ok_or("they are out of order")?;
-    Ok((trie, State { keys: from.array()?, lights: from.array()?, iors: from.array()? }))
+    let state = State {
+        keys: from.array()?,
+        keys_in_trees: from.array()?,
+        lights: from.array()?,
+        iors: from.array()?,
+    };
+    Ok((trie, state))
 }
 
 /// Writes a tile's part of the matrix without its highlight lists.
@@ -120,15 +145,23 @@ pub(super) fn take_matrix(from: &mut Source) -> Result<TransportTile, Unsound> {
 
 /// Writes a tile's highlight lists.
 pub(super) fn put_highlights(highlights: &Highlights, out: &mut Section) {
-    let Highlights { lists, counts, log2_cosines } = highlights;
+    let Highlights { groups, lists, counts, logarithms, weights } = highlights;
+    out.array(groups);
     out.array(lists);
     out.array(counts);
-    out.array(log2_cosines);
+    out.array(logarithms);
+    out.array(weights);
 }
 
 /// Reads a tile's highlight lists.
 pub(super) fn take_highlights(from: &mut Source) -> Result<Highlights, Unsound> {
-    Ok(Highlights { lists: from.array()?, counts: from.array()?, log2_cosines: from.array()? })
+    Ok(Highlights {
+        groups: from.array()?,
+        lists: from.array()?,
+        counts: from.array()?,
+        logarithms: from.array()?,
+        weights: from.array()?,
+    })
 }
 
 /// Writes a tile's trees.

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::file::{self, Numbers, Opened, Scratch};
 use super::{CacheError, CacheReport, Fault, program};
-use super::{parts, sound};
+use super::{lists, parts, sound};
 use crate::film::layout::Layout;
 use crate::fold::transport::{Transport, TransportTile};
 use crate::fold::trie::Trie;
@@ -104,7 +104,8 @@ impl<'a> Reader<'a> {
         self.progress.begin((2 * numbers.tiles) as u64);
         let (trie, state) = self.terms()?;
         let tiles = self.each_tile(pool, |scratch, tile| self.tile(tile, lists, &trie, scratch))?;
-        let within = sound::Surroundings::new(&self.scene, &geometry);
+        let keys = &state.keys_in_trees;
+        let within = sound::Surroundings::new(&self.scene, &geometry, keys);
         let trees: Vec<Option<Arc<KeptTrees>>> =
             self.each_tile(pool, |scratch, tile| self.trees(tile, trees, &within, scratch))?;
         let layout = Layout::new(self.scene.picture.size);
@@ -185,7 +186,7 @@ impl<'a> Reader<'a> {
         if tile < lists && self.file.header.parts[number].is_there() {
             let highlights = self.file.part(number, scratch, |source| {
                 let lists = parts::take_highlights(source)?;
-                sound::highlights(&lists, &transport, self.scene.materials.len()).map(|()| lists)
+                lists::check(&lists, &transport, trie).map(|()| lists)
             })?;
             transport.highlights = Some(highlights);
         }

@@ -3,10 +3,9 @@
 
 use super::codec::Unsound;
 use super::parts::State;
-use crate::film::layout::{LANES, Layout, TILE_BLOCKS};
+use crate::film::layout::{Layout, TILE_BLOCKS};
 use crate::fold::transport::{
-    BlockStart, Frontier, FrontierMark, HighlightList, Highlights, Plane, SPARSE_LANES, Single,
-    TransportTile,
+    BlockStart, Frontier, FrontierMark, Plane, SPARSE_LANES, Single, TransportTile,
 };
 use crate::fold::trie::{Marks, ROOT, Trie, TrieNode};
 use crate::forest::kept::{KeptLight, KeptNode, KeptStart, KeptTrees};
@@ -16,7 +15,8 @@ use crate::scene::factor::{Factor, Kind};
 use crate::scene::fields::DEPTH;
 use crate::scene::{Paint, Scene};
 
-fn ensure(holds: bool, what: Unsound) -> Result<(), Unsound> {
+/// `what` unless it holds.
+pub(super) fn ensure(holds: bool, what: Unsound) -> Result<(), Unsound> {
     if holds { Ok(()) } else { Err(what) }
 }
 
@@ -51,9 +51,8 @@ fn is_of(factor: Factor, slots: &[usize]) -> bool {
     let (index, slot) = (factor.index(), factor.slot());
     match factor.kind() {
         Kind::Background => index == 0 && slot == 0,
-        Kind::Reflect | Kind::Transmit | Kind::TotalReflect | Kind::Shadow => {
-            index < slots.len() && slot == 0
-        }
+        Kind::Reflect | Kind::Transmit | Kind::TotalReflect => index < slots.len() && slot == 0,
+        Kind::Through | Kind::Shadow => index < slots.len() && slot == 0,
         Kind::Ambient | Kind::Diffuse | Kind::Specular => {
             slots.get(index).is_some_and(|slots| slot < *slots)
         }
@@ -64,12 +63,19 @@ fn is_of(factor: Factor, slots: &[usize]) -> bool {
 
 /// Whether a session may know this of a scene.
 pub(super) fn state(state: &State, scene: &Scene) -> Result<(), Unsound> {
-    let State { keys, lights, iors } = state;
+    let State { keys, keys_in_trees, lights, iors } = state;
     let each = [keys.len(), lights.len()] == [scene.lights.len(); 2];
     ensure(each && iors.len() == scene.materials.len(), "of another scene")?;
     let mut sorted = keys.clone();
     sorted.sort_unstable();
     ensure(sorted.is_sorted_by(|a, b| a < b), "two lights have one key")?;
+    // There must be some left for lights to come.
+    let most = usize::from(u16::MAX / 2).max(keys.len());
+    ensure(keys_in_trees.len() <= most, "more keys than lights may have")?;
+    let mut in_trees = keys_in_trees.clone();
+    in_trees.sort_unstable();
+    let known = keys.iter().all(|key| in_trees.binary_search(key).is_ok());
+    ensure(known, "a light has a key that no tree has")?;
     ensure(lights.is_sorted_by(|a, b| a < b), "lights are out of order")?;
     // Not a number stands for several.
     ensure(
@@ -134,60 +140,23 @@ fn positions(starts: &[BlockStart], planes: usize, singles: usize) -> Result<(),
     ensure(ends == [[0, 0], [planes, singles]], "blocks leave something out")
 }
 
-/// Whether highlight lists belong to a sound tile of a scene with so many materials.
-pub(super) fn highlights(
-    highlights: &Highlights,
-    tile: &TransportTile,
-    materials: usize,
-) -> Result<(), Unsound> {
-    let Highlights { lists, counts, log2_cosines } = highlights;
-    let (mut lanes, mut block) = (0, 0);
-    for list in lists {
-        ensure(list.mask != 0, "a highlight of no lane")?;
-        ensure((list.material as usize) < materials, "a highlight of an unknown material")?;
-        block = target(list, tile, block)?;
-        lanes += list.mask.count_ones() as usize;
-    }
-    ensure(lanes == counts.len(), "not one count per lane of every highlight")?;
-    ensure(counts.iter().all(|&c| c > 0), "a lane without samples")?;
-    let samples: usize = counts.iter().map(|&c| usize::from(c)).sum();
-    ensure(samples == log2_cosines.len(), "highlights of another number of samples")?;
-    let cosine = |chunk: &[f32]| chunk.iter().fold(true, |all, l| all & (*l <= 0.0));
-    ensure(log2_cosines.chunks(LANES).all(cosine), "a cosine above 1")
-}
-
-/// The block in which a highlight's coefficients stand, where its list says: `block` or one after it.
-fn target(list: &HighlightList, tile: &TransportTile, block: usize) -> Result<usize, Unsound> {
-    let HighlightList { at, material: _, mask } = *list;
-    let single = at & HighlightList::SINGLE != 0;
-    let start = |at: &BlockStart| if single { at.single } else { at.plane };
-    let from = at & !HighlightList::SINGLE;
-    let after = tile.starts.partition_point(|begin| start(begin) <= from);
-    ensure(after <= TILE_BLOCKS, "a highlight of nothing")?;
-    ensure(after > block, "highlights are not block by block")?;
-    if single {
-        let to = from + mask.count_ones();
-        ensure(to <= tile.starts[after].single, "a highlight of several blocks")?;
-        let singles = &tile.singles[from as usize..to as usize];
-        let lanes = singles.iter().fold(0, |lanes, s| lanes | 1u16 << s.lane());
-        let one = singles.iter().all(|s| s.entry() == singles[0].entry());
-        ensure(lanes == mask && one, "a highlight of other lanes")?;
-    }
-    Ok(after - 1)
-}
-
 /// What trees may refer to.
 pub(super) struct Surroundings {
     layout: Layout,
     samples: usize,
     primitives: usize,
     solids: usize,
+    /// By key, whether light records may have it.
+    keys: Vec<bool>,
 }
 
 impl Surroundings {
-    /// Those of a scene and its geometry.
-    pub(super) fn new(scene: &Scene, geometry: &Geometry) -> Surroundings {
+    /// Those of a scene, its geometry, and the keys of its light records.
+    pub(super) fn new(scene: &Scene, geometry: &Geometry, keys: &[u16]) -> Surroundings {
+        let mut known = vec![false; 1 << 16];
+        keys.iter().for_each(|key| known[usize::from(*key)] = true);
         Surroundings {
+            keys: known,
             layout: Layout::new(scene.picture.size),
             samples: scene.trace.samples as usize,
             primitives: geometry.primitives(),
@@ -254,7 +223,8 @@ impl Walk<'_> {
         }
         for _ in 0..lights {
             let light = self.trees.lights.get(self.at.light as usize).ok_or(CUT)?;
-            let KeptLight { key: _, crossed } = *light;
+            let KeptLight { key, crossed } = *light;
+            ensure(within.keys[usize::from(key)], "a light record with an unknown key")?;
             let from = self.at.crossing as usize;
             let count = if crossed == BLOCKED { 1 } else { usize::from(crossed) };
             let solids = self.trees.crossings.get(from..from + count).ok_or(CUT)?;
@@ -268,27 +238,35 @@ impl Walk<'_> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::forest::tree::Ends;
     use crate::progress::Progress;
+    use crate::scene::model::Model;
     use crate::scene::read;
     use crate::session::{Options, Session};
 
-    fn session() -> Session {
+    pub(in super::super) fn session(size: [u32; 2], samples: u32) -> Session {
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/glass.toml");
         let mut scene = read::file(&file).unwrap();
-        scene.picture.size = [37, 9];
-        scene.trace.samples = 2;
+        (scene.picture.size, scene.trace.samples) = (size, samples);
+        // Highlights with weights and without.
+        scene.materials[0].specular = crate::color::Rgb::grey(0.5);
+        scene.materials[1].model = Model::Hall;
+        scene.materials[2].fresnel = true;
         let options = Options { threads: 2, memory: 1 << 30 };
         Session::open(scene, options, &Progress::default()).unwrap()
     }
 
     /// A fault by its words, and what makes it.
-    type Case<T> = (&'static str, fn(&mut T));
+    pub(in super::super) type Case<T> = (&'static str, fn(&mut T));
 
     /// Holds `check` to finding every fault in something sound.
-    fn hold<T: Clone>(sound: &T, cases: &[Case<T>], check: impl Fn(&T) -> Result<(), Unsound>) {
+    pub(in super::super) fn hold<T: Clone>(
+        sound: &T,
+        cases: &[Case<T>],
+        check: impl Fn(&T) -> Result<(), Unsound>,
+    ) {
         assert_eq!(check(sound), Ok(()));
         for (words, harm) in cases {
             let mut harmed = sound.clone();
@@ -306,7 +284,7 @@ mod tests {
 
     #[test]
     fn faults_of_a_matrix_are_found() {
-        let session = session();
+        let session = session([37, 9], 2);
         let terms = session.transport().trie.nodes().len();
         let cases: [Case<TransportTile>; 14] = [
             ("the dictionary is out of order", |t| t.terms.swap(0, 1)),
@@ -332,39 +310,8 @@ mod tests {
     }
 
     #[test]
-    fn faults_of_highlight_lists_are_found() {
-        let session = session();
-        let tile = &session.transport().tiles[0];
-        let cases: [Case<Highlights>; 13] = [
-            ("a highlight of no lane", |h| h.lists[0].mask = 0),
-            ("a highlight of an unknown material", |h| h.lists[0].material = u16::MAX),
-            ("a highlight of nothing", |h| h.lists[0].at = u32::MAX >> 1),
-            ("a highlight of nothing", |h| h.lists[0].at = u32::MAX),
-            ("highlights are not block by block", |h| h.lists.reverse()),
-            ("a highlight of several blocks", |h| {
-                let some = |l: &&mut HighlightList| l.at & HighlightList::SINGLE != 0;
-                h.lists.iter_mut().rfind(some).unwrap().mask = u16::MAX;
-            }),
-            ("a highlight of other lanes", |h| {
-                let some = |l: &&mut HighlightList| l.at & HighlightList::SINGLE != 0;
-                let list = h.lists.iter_mut().find(some).unwrap();
-                list.mask = list.mask.rotate_left(1);
-            }),
-            ("not one count per lane of every highlight", |h| h.counts.push(1)),
-            ("a lane without samples", |h| h.counts[0] = 0),
-            ("highlights of another number of samples", |h| h.counts[0] += 1),
-            ("highlights of another number of samples", |h| h.log2_cosines.push(-1.0)),
-            ("a cosine above 1", |h| h.log2_cosines[9] = 0.1),
-            ("a cosine above 1", |h| h.log2_cosines[9] = f32::NAN),
-        ];
-        let materials = session.scene().materials.len();
-        let lists = tile.highlights.as_ref().unwrap();
-        hold(lists, &cases, |lists| highlights(lists, tile, materials));
-    }
-
-    #[test]
     fn faults_of_terms_are_found() {
-        let session = session();
+        let session = session([37, 9], 2);
         fn below_last(trie: &mut Trie, factor: Factor) {
             let mut nodes = trie.nodes().to_vec();
             let parent = nodes.len() as u32 - 1;
@@ -393,14 +340,9 @@ mod tests {
 
     #[test]
     fn faults_of_what_a_session_knows_are_found() {
-        let session = session();
-        let sound = || State {
-            keys: session.keys.clone(),
-            lights: session.names.lights.clone(),
-            iors: session.iors.clone(),
-        };
+        let session = session([37, 9], 2);
         let fault = |harm: fn(&mut State)| {
-            let mut harmed = sound();
+            let mut harmed = State::of(&session);
             harm(&mut harmed);
             state(&harmed, session.scene())
         };
@@ -410,12 +352,16 @@ mod tests {
         assert_eq!(fault(|s| s.iors.push(1.0)), Err("of another scene"));
         assert_eq!(fault(|s| _ = s.keys.pop()), Err("of another scene"));
         assert_eq!(fault(|s| s.keys[0] = s.keys[1]), Err("two lights have one key"));
+        assert_eq!(fault(|s| s.keys_in_trees.extend([9, 7])), Ok(()));
+        assert_eq!(fault(|s| s.keys_in_trees = vec![9]), Err("a light has a key that no tree has"));
+        let many = fault(|s| s.keys_in_trees.extend(0..u16::MAX / 2));
+        assert_eq!(many, Err("more keys than lights may have"));
         assert_eq!(fault(|s| s.lights.swap(0, 1)), Err("lights are out of order"));
     }
 
     #[test]
     fn faults_of_a_frontier_are_found() {
-        let session = session();
+        let session = session([37, 9], 2);
         let terms = session.transport().trie.nodes().len();
         let several = |tile: &&TransportTile| tile.frontier.terms.len() > 1;
         let tile = session.transport().tiles.iter().find(several).unwrap();
@@ -441,8 +387,8 @@ mod tests {
 
     #[test]
     fn faults_of_trees_are_found() {
-        let session = session();
-        let cases: [Case<KeptTrees>; 14] = [
+        let session = session([37, 9], 2);
+        let cases: [Case<KeptTrees>; 15] = [
             ("not 64 blocks", |t| _ = t.blocks.pop()),
             ("a block starts elsewhere than its samples", |t| t.blocks[1].node += 1),
             ("the last block ends elsewhere than its samples", |t| t.blocks[64].word += 1),
@@ -460,9 +406,10 @@ mod tests {
                 t.nodes[5].ends = Ends::new(Branch::Missed, Branch::Missed, true);
             }),
             ("an unknown solid", |t| t.crossings[0] = u32::MAX),
+            ("a light record with an unknown key", |t| t.lights[3].key = u16::MAX),
             ("trees end too early", |t| t.lights[0].crossed = BLOCKED - 1),
         ];
-        let within = Surroundings::new(session.scene(), session.geometry());
+        let within = Surroundings::new(session.scene(), session.geometry(), &session.keys_in_trees);
         let trees = session.forest().tiles[0].as_deref().unwrap();
         hold(trees, &cases, |trees| within.trees(trees, 0));
         // The second tile has fewer pixels.
@@ -471,13 +418,13 @@ mod tests {
 
     #[test]
     fn a_tree_deeper_than_any_limit_is_found() {
-        let session = session();
+        let session = session([37, 9], 2);
         let kept = session.forest().tiles[1].as_deref().unwrap();
         assert_eq!(kept.hits[0] & 1, 1, "the first sample meets the scene");
         let ends = Ends::new(Branch::Grown, Branch::Zero, false);
         let first = KeptNode { lights: 0, ends, ..kept.nodes[0] };
         let trees = KeptTrees { nodes: vec![first; 100], ..kept.clone() };
-        let within = Surroundings::new(session.scene(), session.geometry());
+        let within = Surroundings::new(session.scene(), session.geometry(), &session.keys_in_trees);
         assert_eq!(within.trees(&trees, 1), Err("a tree deeper than the deepest limit"));
     }
 }

@@ -10,6 +10,7 @@ use super::codec::Section;
 use super::file::{Header, MAGIC, Numbers, Opened, PREFIX, Part, Scratch, pack};
 use super::*;
 use crate::progress::Progress;
+use crate::scene::model::Model;
 use crate::scene::{Scene, read as scene_text};
 use crate::session::{Options, Session};
 
@@ -37,6 +38,10 @@ fn scene() -> Scene {
     scene.picture.size = [37, 35];
     scene.trace.samples = 1;
     scene.trace.depth = 3;
+    // Highlights with weights and without.
+    scene.materials[1].model = Model::Hall;
+    scene.materials[2].fresnel = true;
+    scene.materials[3].model = Model::CookTorrance;
     scene
 }
 
@@ -220,6 +225,52 @@ fn a_job_that_is_cancelled_leaves_the_file_of_before() {
 }
 
 #[test]
+fn a_file_that_is_not_finished_leaves_the_one_of_before() {
+    let kept = kept(false);
+    let files = || std::fs::read_dir(kept.folder.path()).unwrap().count();
+    let mut writing = Writing::begin(&kept.session, &kept.path, false).unwrap();
+    while !writing.is_complete() {
+        assert_eq!(files(), 2);
+        assert!(std::fs::read(&kept.path).unwrap() == kept.bytes);
+        let written = writing.go_on(&kept.session, 3).unwrap();
+        assert!((1..=3).contains(&written));
+    }
+    drop(writing);
+    assert!(std::fs::read(&kept.path).unwrap() == kept.bytes);
+    assert_eq!(files(), 1, "left-over files");
+    let mut writing = Writing::begin(&kept.session, &kept.path, true).unwrap();
+    assert_eq!(writing.go_on(&kept.session, 1000).unwrap() as u64, writing.parts());
+    assert_eq!(writing.finish().unwrap().trees, 4);
+    assert!(std::fs::read(&kept.path).unwrap().len() > kept.bytes.len());
+    assert_eq!(files(), 1, "left-over files");
+}
+
+#[test]
+#[should_panic(expected = "the session of the beginning")]
+fn an_edit_while_a_file_is_written_is_noticed() {
+    let mut kept = kept(false);
+    let mut writing = Writing::begin(&kept.session, &kept.path, false).unwrap();
+    writing.go_on(&kept.session, 1).unwrap();
+    let mut scene = kept.session.scene().clone();
+    scene.picture.exposure = 1.0;
+    kept.session.edit(scene, &Progress::default()).unwrap();
+    let _ = writing.go_on(&kept.session, 1);
+}
+
+#[test]
+fn a_file_that_is_no_cache_is_not_replaced() {
+    let kept = kept(false);
+    let other = kept.folder.path().join("other");
+    for (text, replaced) in [("a note", false), ("", false), ("RAYFOREST CACHE and so on", true)] {
+        std::fs::write(&other, text).unwrap();
+        let written = write(&kept.session, &other, false, &Progress::default());
+        assert_eq!(written.is_ok(), replaced, "{text}");
+        assert_eq!(std::fs::read(&other).unwrap() == text.as_bytes(), !replaced, "{text}");
+        assert!(replaced || written.unwrap_err().fault == Fault::Foreign);
+    }
+}
+
+#[test]
 fn lengths_that_no_part_has_ask_for_no_memory() {
     let kept = kept(true);
     let last = kept.header().parts.len() - 1;
@@ -312,8 +363,14 @@ fn exercise(cached: Cached, opened: &Arc<Scene>, pool: &Arc<ThreadPool>) {
     let mut deep = session.scene().clone();
     deep.trace.depth += 1;
     let _ = session.edit(deep, &progress);
+    let mut fewer = session.scene().clone();
+    fewer.lights.remove(0);
+    let _ = session.edit(fewer, &progress);
+    let mut modelled = session.scene().clone();
+    modelled.materials[4].model = Model::Blinn;
+    let _ = session.edit(modelled, &progress);
     let mut moved = session.scene().clone();
-    moved.lights.remove(0);
+    moved.lights.iter_mut().for_each(|light| light.place = opened.lights[0].place.clone());
     let _ = session.edit(moved, &progress);
     let _ = session.edit(opened.clone(), &progress);
     session.redraw();

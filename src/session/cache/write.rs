@@ -1,113 +1,146 @@
 //! Writes a cache: parts are packed on all threads and follow each other into the file.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 use rayon::prelude::*;
 
 use super::codec::Section;
 use super::file::{self, Header, Numbers, Part};
-use super::parts;
+use super::parts::{self, State};
 use super::{CacheError, CacheReport, Fault, program};
-use crate::film::write::{WriteSeek, atomically};
-use crate::progress::{Cancelled, Progress};
-use crate::scene;
+use crate::film::write::{Unfinished, WriteError};
+use crate::progress::Progress;
+use crate::scene::{self, Scene};
 use crate::session::Session;
 
 /// Parts per thread that are packed before they are written: what is held beside the session.
 const PARTS_AT_ONCE: usize = 8;
 
 /// Writes what a session has traced; `trees` asks for its trees too. What was at `path` before is
-/// there until the new file is whole.
+/// there until the new file is whole; a file that is no cache stays.
 pub fn write(
     session: &Session,
     path: &Path,
     trees: bool,
     progress: &Progress,
 ) -> Result<CacheReport, CacheError> {
-    let start = Instant::now();
-    let mut writer = Writer::new(session, trees, progress);
-    let mut cancelled = false;
-    let written = atomically(path, |out| {
-        writer.all(out).map_err(|stop| match stop {
-            Stop::Cancelled => {
-                cancelled = true;
-                String::new()
-            }
-            Stop::Io(error) => error.to_string(),
-        })
-    });
-    match written {
-        Ok(()) => Ok(CacheReport { seconds: start.elapsed().as_secs_f64(), ..writer.report }),
-        Err(_) if cancelled => Err(Fault::from(Cancelled).of(path)),
-        Err(error) => Err(Fault::Io { cause: error.to_string() }.of(path)),
+    let mut writing = Writing::begin(session, path, trees)?;
+    progress.begin(writing.parts());
+    let at_once = PARTS_AT_ONCE * session.pool.current_num_threads();
+    while !writing.is_complete() {
+        progress.check().map_err(|cancelled| Fault::from(cancelled).of(path))?;
+        for _ in 0..writing.go_on(session, at_once)? {
+            progress.step();
+        }
     }
+    writing.finish()
 }
 
-/// Why the file did not become whole.
-enum Stop {
-    Cancelled,
-    Io(std::io::Error),
-}
-
-impl From<Cancelled> for Stop {
-    fn from(_: Cancelled) -> Stop {
-        Stop::Cancelled
-    }
-}
-
-impl From<std::io::Error> for Stop {
-    fn from(error: std::io::Error) -> Stop {
-        Stop::Io(error)
-    }
-}
-
-struct Writer<'a> {
-    session: &'a Session,
+/// A cache file that is written part by part, as long as the session stays what it is. Dropped
+/// before it is finished, it leaves what was there before.
+pub struct Writing {
+    path: PathBuf,
+    file: Unfinished,
     trees: bool,
-    progress: &'a Progress,
+    /// Of the session, to know it again.
+    scene: Arc<Scene>,
     numbers: Numbers,
+    /// Number of the next part.
+    next: usize,
     header: Header,
     report: CacheReport,
+    start: Instant,
 }
 
-impl<'a> Writer<'a> {
-    fn new(session: &'a Session, trees: bool, progress: &'a Progress) -> Writer<'a> {
-        let numbers = Numbers { tiles: session.transport.tiles.len() };
-        progress.begin(numbers.count() as u64);
-        let header = Header {
-            program: program(),
-            meshes: file::hashes(&session.scene),
-            trace: session.trace,
-            parts: vec![Part::default(); numbers.count()],
+impl Writing {
+    /// Begins a file; `trees` asks for the session's trees too.
+    pub fn begin(session: &Session, path: &Path, trees: bool) -> Result<Writing, CacheError> {
+        let begin = || -> Result<Writing, Fault> {
+            if file::is_foreign(path)? {
+                return Err(Fault::Foreign);
+            }
+            let numbers = Numbers { tiles: session.transport.tiles.len() };
+            let header = Header {
+                program: program(),
+                meshes: file::hashes(&session.scene),
+                trace: session.trace,
+                parts: vec![Part::default(); numbers.count()],
+            };
+            let mut file = Unfinished::begin(path)?;
+            // As long as it will be when its table is filled: its place is kept free until then.
+            file.out().write_all(&header.bytes())?;
+            Ok(Writing {
+                path: path.into(),
+                file,
+                trees,
+                scene: session.scene.clone(),
+                numbers,
+                next: 0,
+                header,
+                report: CacheReport::default(),
+                start: Instant::now(),
+            })
         };
-        Writer { session, trees, progress, numbers, header, report: CacheReport::default() }
+        begin().map_err(|fault| fault.of(path))
     }
 
-    /// The header is as long when its table is filled, so its place is kept free until then.
-    fn all(&mut self, out: &mut dyn WriteSeek) -> Result<(), Stop> {
-        out.write_all(&self.header.bytes())?;
-        let at_once = PARTS_AT_ONCE * self.session.pool.current_num_threads();
-        for first in (0..self.numbers.count()).step_by(at_once) {
-            self.progress.check()?;
-            let some = first..self.numbers.count().min(first + at_once);
-            let packed: Vec<Option<(Vec<u8>, Part)>> = self.session.pool.install(|| {
-                let sections = some.clone().into_par_iter();
-                sections.map_init(Section::default, |section, n| self.pack(n, section)).collect()
-            });
-            for (number, packed) in some.zip(packed) {
-                if let Some((bytes, part)) = packed {
-                    out.write_all(&bytes)?;
-                    self.count(number, &part);
-                    self.header.parts[number] = part;
-                }
-                self.progress.step();
-            }
+    /// Whether it is a session's, as that is now.
+    pub fn is_of(&self, session: &Session) -> bool {
+        Arc::ptr_eq(&self.scene, &session.scene)
+    }
+
+    /// How many parts there are.
+    pub fn parts(&self) -> u64 {
+        self.numbers.count() as u64
+    }
+
+    /// Whether all parts are written.
+    pub fn is_complete(&self) -> bool {
+        self.next == self.numbers.count()
+    }
+
+    /// Writes at most so many more parts; gives how many.
+    ///
+    /// # Panics
+    /// If the session was edited since the file was begun.
+    pub fn go_on(&mut self, session: &Session, most: usize) -> Result<usize, CacheError> {
+        assert!(self.is_of(session), "the session of the beginning");
+        let some = self.next..self.numbers.count().min(self.next + most);
+        let packed: Vec<Option<(Vec<u8>, Part)>> = session.pool.install(|| {
+            let sections = some.clone().into_par_iter();
+            sections
+                .map_init(Section::default, |section, n| self.pack(session, n, section))
+                .collect()
+        });
+        self.next = some.end;
+        let count = some.len();
+        for (number, packed) in some.zip(packed) {
+            let Some((bytes, part)) = packed else { continue };
+            let written = self.file.out().write_all(&bytes);
+            written.map_err(|error| Fault::from(error).of(&self.path))?;
+            self.count(number, &part);
+            self.header.parts[number] = part;
         }
-        self.report.file_bytes = out.stream_position()?;
-        out.rewind()?;
-        out.write_all(&self.header.bytes())?;
-        Ok(())
+        Ok(count)
+    }
+
+    /// Puts the file in its place.
+    ///
+    /// # Panics
+    /// If parts are missing.
+    pub fn finish(self) -> Result<CacheReport, CacheError> {
+        assert!(self.is_complete(), "every part is written");
+        let Writing { path, mut file, header, mut report, start, .. } = self;
+        let finish = || -> Result<CacheReport, Fault> {
+            report.file_bytes = file.out().stream_position()?;
+            file.out().rewind()?;
+            file.out().write_all(&header.bytes())?;
+            file.finish()?;
+            Ok(CacheReport { seconds: start.elapsed().as_secs_f64(), ..report })
+        };
+        finish().map_err(|fault| fault.of(&path))
     }
 
     fn count(&mut self, number: usize, part: &Part) {
@@ -118,16 +151,19 @@ impl<'a> Writer<'a> {
     }
 
     /// The part of this number, if there is one.
-    fn pack(&self, number: usize, section: &mut Section) -> Option<(Vec<u8>, Part)> {
+    fn pack(
+        &self,
+        session: &Session,
+        number: usize,
+        section: &mut Section,
+    ) -> Option<(Vec<u8>, Part)> {
         section.clear();
-        let Session { transport, forest, scene, .. } = self.session;
+        let Session { transport, forest, scene, .. } = session;
         let tiles = self.numbers.tiles;
         match number {
             Numbers::SCENE => section.array(scene::write::text(scene).as_bytes()),
             Numbers::TERMS => {
-                let (keys, lights) = (self.session.keys.clone(), self.session.names.lights.clone());
-                let state = parts::State { keys, lights, iors: self.session.iors.clone() };
-                parts::put_terms(&transport.trie, &state, section);
+                parts::put_terms(&transport.trie, &State::of(session), section);
             }
             n if n < self.numbers.lists(0) => {
                 parts::put_matrix(&transport.tiles[n - self.numbers.matrix(0)], section);
@@ -143,5 +179,12 @@ impl<'a> Writer<'a> {
             _ => return None,
         }
         Some(file::pack(section))
+    }
+}
+
+impl From<WriteError> for Fault {
+    fn from(error: WriteError) -> Fault {
+        let WriteError { path: _, cause } = error;
+        Fault::Io { cause }
     }
 }
