@@ -26,8 +26,8 @@ impl App {
         if !status.in_step {
             return refused("once the picture is exact");
         }
-        let size = megabytes(status.matrix_bytes);
-        let about = format!("{about}: {}, at most {size}", name(&cache::path_of(path)));
+        let file = name(&cache::path_of(path));
+        let about = format!("{about}: {file}, at most {}", size(status.matrix_bytes));
         KeepOffer { possible: true, about }
     }
 
@@ -53,17 +53,18 @@ impl App {
 
 /// What was kept, where, and how large it is.
 pub(super) fn kept_text(path: &Path, bytes: u64) -> String {
-    format!("kept traced in {}, {}", name(path), megabytes(bytes))
+    format!("kept traced in {}, {}", name(path), size(bytes))
 }
 
 fn name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
-fn megabytes(bytes: u64) -> String {
-    match bytes as f64 / 1e6 {
-        few if few < 9.95 => format!("{few:.1} MB"),
-        many => format!("{many:.0} MB"),
+fn size(bytes: u64) -> String {
+    match bytes as f64 {
+        few if few < 1e6 => format!("{:.0} kB", few / 1e3),
+        some if some < 9.95e6 => format!("{:.1} MB", some / 1e6),
+        many => format!("{:.0} MB", many / 1e6),
     }
 }
 
@@ -76,6 +77,6 @@ mod tests {
         let text = |bytes| kept_text(Path::new("a/room.rayforest-cache"), bytes);
         assert_eq!(text(150_400_000), "kept traced in room.rayforest-cache, 150 MB");
         assert_eq!(text(9_960_000), "kept traced in room.rayforest-cache, 10 MB");
-        assert_eq!(text(40_000), "kept traced in room.rayforest-cache, 0.0 MB");
+        assert_eq!(text(40_000), "kept traced in room.rayforest-cache, 40 kB");
     }
 }

@@ -302,6 +302,7 @@ impl Shader {
             self.wanted = Some(scene);
             self.cache = cache.or(self.cache.take());
             self.interrupt_keeping();
+            self.opened = false;
             self.settle(taken);
         }
     }
@@ -356,7 +357,7 @@ impl Shader {
         if report.class != Class::None {
             self.busy_until = Some(Instant::now() + YIELD);
         }
-        (self.last, self.opened) = (Some(report), false);
+        self.last = Some(report);
         self.show();
     }
 

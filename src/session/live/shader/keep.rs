@@ -134,8 +134,8 @@ impl Shader {
         let Some(wanted) = self.wanted.clone() else { return };
         session.move_to(&self.pool);
         let old = self.whole.replace(session);
-        let opened = self.reach_whole(&wanted, taken).is_ok();
-        self.opened = opened;
+        self.opened = true;
+        self.opened = self.reach_whole(&wanted, taken).is_ok();
         drop(old);
     }
 
