@@ -118,7 +118,7 @@ fn regrowing(session: &mut Session) -> Vec<(String, Scene)> {
     }
     for (i, material) in scene.materials.iter().enumerate().take(4) {
         let name = &material.name;
-        if material.ior_matters() {
+        if scene.ior_matters(i) {
             edit(format!("ior of {name}"), &|s| s.materials[i].ior *= 1.1);
         }
         for (key, value) in [("reflect", "0.5"), ("transmit", "0.5")] {

@@ -60,7 +60,8 @@ impl HighlightPower {
         let powers = &mut self.powers;
         let mut changed = false;
         for part in highlights.parts() {
-            if let Some(peak) = &peaks[part.material as usize] {
+            // A material that is gone has none: what showed it is about to be folded again.
+            if let Some(Some(peak)) = peaks.get(part.material as usize) {
                 changed |= dispatch!(self.level, _simd => {
                     fold_part(tile, &part, peak, sample_weight, powers)
                 });

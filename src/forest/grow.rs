@@ -136,8 +136,6 @@ pub struct Grower<'a> {
     lights: Vec<LightPlace>,
     /// Per light the key of its records in kept trees.
     keys: Vec<u16>,
-    /// Per material whether its index of refraction matters.
-    bends: Vec<bool>,
     /// Per solid.
     iors: Vec<f64>,
     models: Vec<Model>,
@@ -238,7 +236,6 @@ impl<'a> Grower<'a> {
             models: scene.materials.iter().map(|m| m.model).collect(),
             weighing: scene.materials.iter().map(Material::weighs_branches).collect(),
             keys,
-            bends: scene.materials.iter().map(Material::ior_matters).collect(),
             iors: geometry.of_solids(&iors),
             iors_before: iors_before.to_vec(),
             view: View::new(&scene.camera, scene.picture.size),
@@ -394,11 +391,9 @@ impl<'a> Grower<'a> {
         let mut surface = Surface::new(&at, from.ray.direction);
         let crossing = worker.media.cross(from.medium, &at, surface.entering);
         let eta = crossing.eta(&self.iors);
-        // What lets nothing through bends nothing, and reflects nothing more than a mirror does.
-        let bends = self.bends[at.material as usize];
-        let refracted = if bends { surface.refract(eta) } else { None };
+        let refracted = surface.refract(eta);
         (surface.contrast, surface.refracted) = (crossing.contrast(&self.iors), refracted);
-        let total = bends && refracted.is_none();
+        let total = refracted.is_none();
         let fresnel = self.reflectance(at.material, &surface);
         let [mirrored, passed] = weights(fresnel);
         let follow = |kind, by: f32| self.follow(from, (kind, at.material), by * from.geometric);

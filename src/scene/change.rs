@@ -34,6 +34,8 @@ pub struct Change {
     pub lights: Vec<Option<u16>>,
     /// Per material of the new scene that of the old one.
     pub materials: Vec<Option<u16>>,
+    /// Whether any index of refraction differs.
+    iors: bool,
     /// Materials of the new scene whose highlight has another peak: their coefficients are folded
     /// again.
     pub refold: Vec<u16>,
@@ -56,10 +58,12 @@ impl Change {
         let Background { color } = background;
         change.term(*color != new.background.color);
         change.trace(trace, &new.trace);
-        let weighs = |s: &Scene| s.materials.iter().any(Material::weighs_branches);
-        let other_cutoff = trace.cutoff != new.trace.cutoff;
         // What is cut off by geometry is not in the terms.
-        change.ray(other_cutoff && (weighs(old) || weighs(new)), "trace.cutoff");
+        let other_cutoff = trace.cutoff != new.trace.cutoff;
+        for (material, before) in materials.iter().zip(0..).filter(|_| other_cutoff) {
+            change.node(material.weighs_branches(), before, "trace.cutoff");
+            change.casts |= material.weighs_branches() && new.trace.cutoff < trace.cutoff;
+        }
         change.form(solids.len() != new.solids.len(), "the number of solids");
         change.lights(lights, &new.lights);
         change.materials = matched(materials, &new.materials, |m| &m.name);
@@ -67,6 +71,9 @@ impl Change {
             if let Some(before) = change.materials[i] {
                 change.material(i, before, &materials[before as usize], material);
             }
+        }
+        if change.iors {
+            change.refraction(old, new);
         }
         change.surfaces |= !change.keeps_materials() || materials.len() != new.materials.len();
         for (a, b) in solids.iter().zip(&new.solids) {
@@ -76,6 +83,18 @@ impl Change {
         change.nodes.sort_unstable();
         change.nodes.dedup();
         change
+    }
+
+    /// Compares indices of refraction, where they matter.
+    fn refraction(&mut self, old: &Scene, new: &Scene) {
+        for (i, material) in new.materials.iter().enumerate() {
+            let Some(before) = self.materials[i] else { continue };
+            let at = usize::from(before);
+            let differs = old.materials[at].ior != material.ior;
+            let shows = differs && (old.ior_matters(at) || new.ior_matters(i));
+            self.node(shows, before, "ior");
+            self.casts |= shows && (!material.transmit.is_black() || material.weighs_branches());
+        }
     }
 
     /// Whether every material of the new scene has its index of the old one.
@@ -189,7 +208,7 @@ impl Change {
             transmit,
             filter,
             ior,
-            fresnel,
+            fresnel: _,
         } = old;
         self.paint(before, paint, &new.paint);
         let local = *kloc != new.kloc || *ambient != new.ambient || *diffuse != new.diffuse;
@@ -197,15 +216,20 @@ impl Change {
         self.term(local || gloss || *emission != new.emission);
         let path = *reflect != new.reflect || *transmit != new.transmit || *filter != new.filter;
         self.term(path);
-        // `shininess` and `roughness`: only the one that the model heeds shapes its peak.
+        // `shininess` and `roughness`: only the one that the model heeds shapes its peak. Hall's model
+        // has Fresnel's weights, whatever `fresnel` says.
         if *model == new.model && Peak::of(old) != Peak::of(new) {
             self.refold.push(index as u16);
         }
-        self.ray(*model != new.model, "model");
-        self.ray(*fresnel != new.fresnel, "fresnel");
-        let bends = *ior != new.ior && (old.ior_matters() || new.ior_matters());
-        self.node(bends, before, "ior");
-        self.casts |= bends && (!new.transmit.is_black() || new.weighs_branches());
+        self.node(*model != new.model, before, "model");
+        self.node(old.weighs_branches() != new.weighs_branches(), before, "fresnel");
+        let branches = !new.reflect.is_black() || !new.transmit.is_black();
+        // Fresnel takes light from branches; without it more of them are worth following.
+        self.casts |= branches && old.weighs_branches() && !new.weighs_branches();
+        // Hall's model shows lights behind what transmits.
+        let hall = *model != Model::Hall && new.model == Model::Hall;
+        self.casts |= hall && !new.transmit.is_black();
+        self.iors |= *ior != new.ior;
     }
 
     fn paint(&mut self, before: u16, old: &Paint, new: &Paint) {
@@ -270,19 +294,11 @@ fn matched<T>(old: &[T], new: &[T], name: impl Fn(&T) -> &str) -> Vec<Option<u16
 }
 
 impl Material {
-    /// Whether its index of refraction shows: what lets no light through bends none, but Fresnel may
-    /// weigh its highlights or its mirror. With a weight above 1 total reflection differs from a
-    /// mirror's.
-    pub fn ior_matters(&self) -> bool {
-        let weighed = self.weighs_branches() || self.model == Model::CookTorrance;
-        weighed || !self.transmit.is_black() || self.reflect.max_channel() > 1.0
-    }
-
     /// Whether the rays of the seen path and shadow rays go on from it as from `other`.
     fn leads_rays_like(&self, other: &Material) -> bool {
         let path = |m: &Material| (m.reflect, m.transmit, m.filter);
         let weighs = |m: &Material| (m.weighs_branches(), m.model == Model::Hall);
         let alike = path(self) == path(other) && weighs(self) == weighs(other);
-        alike && (self.ior == other.ior || !self.ior_matters())
+        alike && self.ior == other.ior
     }
 }

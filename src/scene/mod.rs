@@ -11,6 +11,7 @@ mod direction;
 pub mod energy;
 pub mod factor;
 pub mod fields;
+mod inside;
 pub mod mesh;
 pub mod model;
 mod obj;

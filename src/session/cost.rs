@@ -48,10 +48,34 @@ pub struct Pixels {
 /// frontier lives. So are the pixels.
 pub fn cost(session: &mut Session, path: &str) -> Option<Cost> {
     let altered = path::altered(session.scene(), path)?;
+    if let Some(cost) = cost_of_refraction(session, &altered) {
+        return Some(cost);
+    }
     Some(match knob(session.scene(), &altered) {
         Some(knob) => knob.cost(session),
         None => cost_of(session, &altered),
     })
+}
+
+/// The cost of an index of refraction that does not show as it is; `None` for other parameters.
+fn cost_of_refraction(session: &mut Session, altered: &Scene) -> Option<Cost> {
+    let scene = session.shared_scene();
+    let mut pairs = scene.materials.iter().zip(&altered.materials);
+    let material = pairs.position(|(a, b)| a.ior != b.ior)?;
+    let limit = scene.ior_matters_below(material)?;
+    if scene.materials[material].ior < limit {
+        return None;
+    }
+    let mut beyond = (*scene).clone();
+    beyond.materials[material].ior = limit.next_down();
+    let of = session.transport.layout.pixels();
+    let change = Change::between(&scene, &beyond);
+    let count = match session.work(&beyond, &change) {
+        Work::Regrow(plan) => plan.pixels(),
+        Work::Shade => 0,
+        Work::Trace(_) => of,
+    };
+    Some(Cost::InstantDownTo(limit, Pixels { count, of }))
 }
 
 /// The same while the scene is still traced and `session` holds a preview of it: `None` also where
@@ -207,14 +231,10 @@ impl Knob {
     /// The last step at which an index of refraction that the trees were not grown with does not
     /// matter, if it matters beyond.
     fn stale_from(self, session: &Session) -> Option<u32> {
-        let (material, step) = match self {
-            Knob::Reflect(i) => (i, 1f32.to_bits()),
-            Knob::Transmit(i) => (i, 0),
-            Knob::Filter(_) | Knob::Depth | Knob::Cutoff => return None,
-        };
+        let Knob::Transmit(material) = self else { return None };
         let material_now = &session.scene().materials[material];
         let stale = material_now.ior != session.iors[material];
-        (stale && !material_now.ior_matters()).then_some(step)
+        (stale && !session.scene().ior_matters(material)).then_some(0)
     }
 }
 

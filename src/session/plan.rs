@@ -68,8 +68,11 @@ impl Session {
     /// If the change asks for everything.
     pub(super) fn plan(&mut self, scene: &Scene, change: &Change) -> Option<Plan> {
         assert!(!change.everything, "only a trace does everything");
-        let mut reason = change.moves_rays.map(|what| format!("{what} moves rays"));
         let mut casts = change.casts;
+        let mut reason = change.moves_rays.map(|what| match casts {
+            true => format!("{what} moves rays"),
+            false => format!("{what} is read from the kept trees"),
+        });
         let trie = &self.transport.trie;
         let count = trie.nodes().len();
         let (mut nodes, stale) = (change.nodes.clone(), self.stale(scene, change));
@@ -80,8 +83,8 @@ impl Session {
         }
         if !stale.is_empty() {
             reason.get_or_insert_with(|| "ior moves rays".into());
-            casts = true;
-            nodes.extend(stale);
+            casts |= stale.iter().any(|(_, leads)| *leads);
+            nodes.extend(stale.into_iter().map(|(before, _)| before));
         }
         let mut concern = Concern {
             terms: vec![false; if nodes.is_empty() && !change.shadows { 0 } else { count }],
@@ -117,12 +120,14 @@ impl Session {
     }
 
     /// Old materials whose index of refraction shows in the new scene, and with which the trees were
-    /// not grown: while nothing passed through them it did not matter.
-    fn stale(&self, scene: &Scene, change: &Change) -> Vec<u16> {
-        let pairs = scene.materials.iter().zip(&change.materials);
-        let stale = pairs.filter_map(|(new, &before)| {
+    /// not grown, because it did not matter; and whether rays go on through them.
+    fn stale(&self, scene: &Scene, change: &Change) -> Vec<(u16, bool)> {
+        let pairs = scene.materials.iter().zip(&change.materials).enumerate();
+        let stale = pairs.filter_map(|(i, (new, &before))| {
             let before = before?;
-            (new.ior_matters() && new.ior != self.iors[before as usize]).then_some(before)
+            let leads = !new.transmit.is_black() || new.weighs_branches();
+            let differs = new.ior != self.iors[before as usize] && scene.ior_matters(i);
+            differs.then_some((before, leads))
         });
         stale.collect()
     }

@@ -102,9 +102,9 @@ impl Session {
     /// when a plan was carried out. Where it does not matter, some may stand there with another one
     /// than others: not a number, which differs from every number.
     fn iors_after(&self, scene: &Scene, change: &Change) -> Vec<f64> {
-        let pairs = scene.materials.iter().zip(&change.materials);
-        let after = pairs.map(|(new, before)| match before {
-            Some(before) if !new.ior_matters() && self.iors[*before as usize] != new.ior => {
+        let pairs = scene.materials.iter().zip(&change.materials).enumerate();
+        let after = pairs.map(|(i, (new, before))| match before {
+            Some(before) if self.iors[*before as usize] != new.ior && !scene.ior_matters(i) => {
                 f64::NAN
             }
             _ => new.ior,

@@ -35,6 +35,9 @@ fn raised(scene: &Scene, parameter: &Parameter, value: f64) -> Scene {
 
 /// Values on both sides of a limit: those that need no ray, and those that do.
 fn around(parameter: &Parameter, limit: f64, up: bool) -> (f64, f64) {
+    if parameter.path.ends_with(".ior") {
+        return (limit, limit.next_down());
+    }
     let single = limit as f32;
     assert_eq!(f64::from(single), limit, "{}: a limit between two values", parameter.path);
     let beyond = match (parameter.kind, up) {
@@ -72,12 +75,18 @@ fn lie(session: &mut Session, parameter: &Parameter, cost: Cost) -> Option<Strin
         (!holds(class)).then(|| format!("{path} is {cost:?}, but an edit is {class}"))
     };
     let instant = |class: Class| class <= Class::Reshade;
-    let traced = |class: Class| class == Class::Regrow;
+    // Below the limit of an index of refraction nothing is cast where nothing is let through.
+    let reread = parameter.path.ends_with(".ior");
+    let traced = |class: Class| class == Class::Regrow || (reread && class == Class::Refold);
     match cost {
         Cost::InstantUpTo(limit, _) | Cost::InstantDownTo(limit, _) => {
             let up = matches!(cost, Cost::InstantUpTo(..));
             let (within, beyond) = around(parameter, limit, up);
-            let half = if up { within / 2.0 } else { within.midpoint(1.0) };
+            let half = match (up, reread) {
+                (true, _) => within / 2.0,
+                (false, true) => within * 2.0,
+                (false, false) => within.midpoint(1.0),
+            };
             claim(&raised(&scene, parameter, within), &instant)
                 .or_else(|| claim(&raised(&scene, parameter, beyond), &traced))
                 .or_else(|| claim(&raised(&scene, parameter, half), &instant))

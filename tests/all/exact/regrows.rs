@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use rayforest::film::layout::{LANES, Place, TILE_BLOCKS};
 use rayforest::forest::kept::{KeptStart, KeptTrees};
+use rayforest::forest::tree::{Branch, Reader};
 use rayforest::progress::Progress;
 use rayforest::scene::change::Change;
 use rayforest::scene::{Light, LightPlace, Material, Paint, Scene};
@@ -29,7 +30,7 @@ fn edited(scene: &Scene, random: &mut Random) -> (Scene, String) {
     let material = random.below(scene.materials.len());
     let name = scene.materials[material].name.clone();
     let weights = ["0", "0.003", "0.02", "0.3", "[0.5, 0, 0.2]", "0.8", "1.2"];
-    let words = match random.below(14) {
+    let words = match random.below(17) {
         0 if lights > 0 => {
             let light = &mut edited.lights[random.below(lights)];
             let by = glam::DVec3::new(random.unit(), random.unit(), random.unit()) - 0.4;
@@ -65,6 +66,18 @@ fn edited(scene: &Scene, random: &mut Random) -> (Scene, String) {
                 Paint::Checker { a, b: _, size: _ } => Paint::Solid(*a),
             };
             format!("another texture of {name}")
+        }
+        13 => {
+            let models = ["phong", "blinn", "cook_torrance", "hall"];
+            set_to(&mut edited, &format!("materials.{name}.model"), random.pick(&models))
+        }
+        14 => {
+            let value = random.pick(&["true", "false"]);
+            set_to(&mut edited, &format!("materials.{name}.fresnel"), value)
+        }
+        15 => {
+            let value = random.pick(&["0.1", "0.5"]);
+            set_to(&mut edited, &format!("materials.{name}.roughness"), value)
         }
         12 => {
             set_to(&mut edited, &format!("materials.{name}.shininess"), random.pick(&["3", "40"]))
@@ -144,7 +157,17 @@ fn step(session: &mut Session, scene: &Scene, random: &mut Random, what: &str) -
     let planned = plan(session, scene);
     let before = session.forest().tiles.clone();
     let whole = before.iter().all(Option::is_some);
-    let report = session.edit(scene.clone(), &Progress::default()).unwrap();
+    let old = session.shared_scene();
+    let report = match session.edit(scene.clone(), &Progress::default()) {
+        Ok(report) => report,
+        Err(error) => {
+            // What does not fit after a history does not fit afresh.
+            let afresh = Session::open(scene.clone(), session.options(), &Progress::default());
+            assert_eq!(afresh.err(), Some(error), "{what}");
+            assert!(*session.scene() == *old, "{what}: the scene of an edit that failed");
+            return Class::None;
+        }
+    };
     let fresh = open(scene, 2);
     assert_same_picture(session, &fresh, what);
     session.transport().validate();
@@ -209,7 +232,7 @@ fn wander(name: &str, first: &Scene, memory: Option<f64>) {
     let count = |class| classes.iter().filter(|c| **c == class).count();
     let counts = [Class::Reshade, Class::Refold, Class::Regrow, Class::Retrace].map(count);
     eprintln!("{name}: reshade, refold, regrow, retrace: {counts:?} times");
-    assert!(counts[..3].iter().all(|&n| n > 2) && counts[3] == 0, "{name}: {counts:?}");
+    assert!(counts[..3].iter().all(|&n| n > 0) && counts[3] == 0, "{name}: {counts:?}");
 }
 
 fn small(name: &str) -> Scene {
@@ -302,9 +325,9 @@ fn pixels_are_named_if_and_only_if_their_trees_grow() {
                         }
                         let is_named =
                             lanes.as_ref().is_some_and(|lanes| lanes[block] >> lane & 1 != 0);
-                        let differs = (0..2)
-                            .map(|_| nodes_of(&mut at) != nodes_of(&mut old_at))
-                            .fold(false, |any, differs| any | differs);
+                        let mut pair = || (nodes_of(&mut at), nodes_of(&mut old_at));
+                        let pairs = [(); 2].map(|()| pair());
+                        let differs = pairs.iter().any(|(new, old)| new != old);
                         assert!(
                             is_named || !differs,
                             "{name} {path}: tile {tile} block {block} lane {lane} is not named"
@@ -320,9 +343,9 @@ fn pixels_are_named_if_and_only_if_their_trees_grow() {
     }
 }
 
-/// The next sample's nodes and the ends of their branches.
-fn nodes_of(reader: &mut rayforest::forest::tree::Reader<'_>) -> Vec<(u32, u8)> {
-    use rayforest::forest::tree::Branch;
+/// The next sample's nodes, and whether their branches were followed.
+fn nodes_of(reader: &mut Reader<'_>) -> Vec<(u32, [bool; 2])> {
+    let grows = |end: Branch| matches!(end, Branch::Grown | Branch::Missed);
     let mut list = Vec::new();
     let mut open = usize::from(reader.sample());
     while open > 0 {
@@ -333,7 +356,7 @@ fn nodes_of(reader: &mut rayforest::forest::tree::Reader<'_>) -> Vec<(u32, u8)> 
         let ends = [node.ends.reflected(), node.ends.transmitted()];
         open += ends.iter().filter(|&&end| end == Branch::Grown).count();
         open -= 1;
-        list.push((node.primitive, ends[0] as u8 | (ends[1] as u8) << 4));
+        list.push((node.primitive, ends.map(grows)));
     }
     list
 }

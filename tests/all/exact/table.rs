@@ -131,6 +131,9 @@ const EXPONENT: &[(&str, Class)] =
     &[("0", Refold), ("1", Refold), ("7.5", Refold), ("1e6", Refold), ("@", Refold)];
 /// Where colours fall: the kept trees say where surfaces are.
 const CELL: &[(&str, Class)] = &[("0.25", Refold), ("1", Refold), ("1.5", Refold), ("@", Refold)];
+/// Fresnel's weight makes branches fainter; without it some may come alive.
+const WEIGHS_MIRROR: &[(&str, Class)] =
+    &[("blinn", Refold), ("cook_torrance", Refold), ("hall", Refold), ("@", Regrow)];
 const VECTOR: &[(&str, Class)] = &[("[0.1, -0.3, 0.8]", Retrace), ("@", Retrace)];
 const TURN: &[(&str, Class)] = &[("[0, 0, 15]", Retrace), ("@", Retrace)];
 const SCALE: &[(&str, Class)] =
@@ -199,14 +202,27 @@ pub(super) const ROWS: &[Row] = &[
     row("materials.*.shininess", EXPONENT),
     // Only Cook-Torrance has facets.
     row("materials.*.roughness", &[("0.02", Nothing), ("1", Nothing), ("@", Nothing)]),
+    // Hall's model shows lights behind what transmits.
+    row(
+        "materials.glass.model",
+        &[("blinn", Refold), ("cook_torrance", Refold), ("hall", Regrow), ("@", Regrow)],
+    ),
+    row("materials.mirror.model", WEIGHS_MIRROR),
+    row("materials.brass.model", WEIGHS_MIRROR),
     row(
         "materials.*.model",
-        &[("blinn", Retrace), ("cook_torrance", Retrace), ("hall", Retrace), ("@", Retrace)],
+        &[("blinn", Refold), ("cook_torrance", Refold), ("hall", Refold), ("@", Refold)],
     ),
-    row("materials.*.fresnel", &[("true", Retrace), ("@", Retrace)]),
+    row("materials.glass.fresnel", &[("true", Refold), ("@", Regrow)]),
+    row("materials.mirror.fresnel", &[("true", Refold), ("@", Regrow)]),
+    row("materials.brass.fresnel", &[("true", Refold), ("@", Regrow)]),
+    row("materials.*.fresnel", &[("true", Refold), ("@", Refold)]),
     row("materials.glass.ior", &[("1", Regrow), ("0.8", Regrow), ("2.4", Regrow), ("@", Regrow)]),
-    // Nothing passes through the others, so nothing is bent.
-    row("materials.*.ior", &[("1", Nothing), ("0.8", Nothing), ("2.4", Nothing), ("@", Nothing)]),
+    // Nothing passes through the others: only what is thinner than air or glass shows it.
+    row(
+        "materials.*.ior",
+        &[("1.6", Nothing), ("2.4", Nothing), ("0.8", Refold), ("1", Refold), ("@", Refold)],
+    ),
     row(
         "materials.mirror.reflect",
         &[
@@ -298,7 +314,7 @@ pub(super) const ROWS: &[Row] = &[
 /// Parameters of [`SCENE`] with [`MODELS`] whose cost the model decides.
 pub(super) const GLOSSY: &[Row] = &[
     // Where Fresnel leaves too little, no parameter but the cut-off lets a branch live.
-    row("trace.cutoff", &[("0.5", Retrace), ("0.0001", Retrace), ("0", Retrace), ("@", Retrace)]),
+    row("trace.cutoff", &[("0.5", Refold), ("0.0001", Regrow), ("0", Regrow), ("@", Refold)]),
     row("materials.plain.shininess", EXPONENT),
     row("materials.glass.shininess", EXPONENT),
     row("materials.lamp.shininess", EXPONENT),
@@ -308,9 +324,10 @@ pub(super) const GLOSSY: &[Row] = &[
         &[("0.02", Refold), ("0.1", Refold), ("1", Refold), ("@", Refold)],
     ),
     row("materials.glass.roughness", &[("1", Nothing), ("@", Nothing)]),
-    row("materials.brass.model", &[("hall", Retrace), ("@", Retrace)]),
-    row("materials.brass.fresnel", &[("false", Retrace), ("@", Retrace)]),
-    row("materials.glass.fresnel", &[("true", Retrace), ("@", Retrace)]),
+    row("materials.brass.model", &[("hall", Refold), ("@", Refold)]),
+    row("materials.brass.fresnel", &[("false", Regrow), ("@", Refold)]),
+    // Hall's model weighs anyway.
+    row("materials.glass.fresnel", &[("true", Nothing), ("@", Nothing)]),
     row(
         "materials.glass.transmit",
         &[("0.4", Reshade), ("0", Reshade), ("[0, 0.8, 0]", Reshade), ("@", Reshade)],

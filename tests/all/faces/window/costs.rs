@@ -90,7 +90,7 @@ fn fault(session: &mut Session, path: &str, text: &str) -> Option<String> {
         _ => limit * 0.99,
     };
     let (inside, outside) = (class(session, told), class(session, beyond));
-    let held = inside.is_some_and(|c| c <= Class::Reshade) && outside == Some(Class::Regrow);
+    let held = inside.is_some_and(|c| c <= Class::Reshade) && outside >= Some(Class::Refold);
     (!held).then(|| format!("{path}: `{text}`, but {inside:?} there, {outside:?} beyond"))
 }
 

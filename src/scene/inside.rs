@@ -1,0 +1,152 @@
+//! Which indices of refraction can show: what surrounds the eye, and what light passes through.
+
+use glam::{DMat3, DVec3};
+
+use super::model::Model;
+use super::{Lens, Material, Placement, Scene, Shape, Solid};
+
+/// Beyond rounding: a point this much outside, relative to the solid's size, still counts as inside.
+const MARGIN: f64 = 1e-6;
+
+impl Scene {
+    /// Whether the index of refraction of a material shows.
+    ///
+    /// What lets light through bends it; Fresnel and Cook-Torrance weigh by it. A surface that lets
+    /// nothing through only tells total reflection from a mirror's, which needs a denser medium in
+    /// front of it, or an eye inside it.
+    pub fn ior_matters(&self, material: usize) -> bool {
+        self.ior_matters_below(material).is_none_or(|limit| self.materials[material].ior < limit)
+    }
+
+    /// The index of refraction from which on, upwards, that of a material does not show; `None` if
+    /// it shows whatever it is.
+    pub fn ior_matters_below(&self, material: usize) -> Option<f64> {
+        let surrounding = self.around_the_eye();
+        if self.materials[material].bends_or_weighs() || surrounding.contains(&material) {
+            return None;
+        }
+        let passed = self.materials.iter().filter(|m| !m.transmit.is_black()).map(|m| m.ior);
+        let densest = passed.chain(surrounding.iter().map(|&m| self.materials[m].ior));
+        Some(densest.fold(1.0, f64::max))
+    }
+
+    /// Materials of the solids that may contain the eye, or for a parallel view, any ray's origin.
+    fn around_the_eye(&self) -> Vec<usize> {
+        let known = self.solids.iter().filter(|solid| solid.material < self.materials.len());
+        let [width, pixels] = self.picture.size.map(f64::from);
+        let reach = match self.camera.lens {
+            Lens::Perspective { fov_degrees: _ } => 0.0,
+            // Parallel rays begin on a rectangle around the eye.
+            Lens::Parallel { height } => height / 2.0 * (width / pixels).hypot(1.0),
+        };
+        let around = known.filter(|solid| solid.may_contain(self.camera.eye, reach));
+        around.map(|solid| solid.material).collect()
+    }
+}
+
+impl Material {
+    fn bends_or_weighs(&self) -> bool {
+        let weighs = self.weighs_branches() || self.model == Model::CookTorrance;
+        weighs || !self.transmit.is_black()
+    }
+}
+
+impl Solid {
+    /// Whether a point, or one at most `reach` from it, may lie in the solid: `false` only if none
+    /// does.
+    fn may_contain(&self, point: DVec3, reach: f64) -> bool {
+        let Placement { translate, rotate_degrees, scale } = self.placement;
+        let [x, y, z] = rotate_degrees.to_array().map(f64::to_radians);
+        let turned =
+            DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
+        let p = (turned.transpose() * (point - translate)) / scale;
+        let reach = reach / scale.min_element();
+        let within = |center: DVec3, radius: f64| {
+            (p - center).length() <= radius * (1.0 + MARGIN) + center.length() * MARGIN + reach
+        };
+        match &self.shape {
+            Shape::Sphere { center, radius } => within(*center, *radius),
+            Shape::Plane { normal, offset } => {
+                let size = p.length() + offset.abs();
+                normal.normalize_or_zero().dot(p) <= offset + size * MARGIN + reach
+            }
+            Shape::Box { min, max } => {
+                let margin = DVec3::splat((min.abs() + max.abs()).max_element() * MARGIN + reach);
+                p.cmpge(*min - margin).all() && p.cmple(*max + margin).all()
+            }
+            Shape::Polygon { points: _ } => false,
+            Shape::Mesh { file: _, mesh } => {
+                let far = mesh.positions.iter().map(|q| q.length()).fold(0.0, f64::max);
+                within(DVec3::ZERO, far)
+            }
+            // The knot lies within a torus of radius 1 ½ and its own tube.
+            Shape::Knot { turns: _, tube, segments: _ } => within(DVec3::ZERO, 2.0 + tube),
+            // Radii 1, 1/3, 1/9 … one upon the other.
+            Shape::Sphereflake { center, radius, levels: _ } => within(*center, 2.0 * radius),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::Rgb;
+
+    fn scene(iors: [f64; 2], transmit: [f32; 2]) -> Scene {
+        let mut scene = Scene::default();
+        scene.camera.eye = DVec3::new(0.0, -5.0, 0.0);
+        for (i, name) in ["a", "b"].into_iter().enumerate() {
+            let mut material = Material::new(name);
+            (material.ior, material.transmit) = (iors[i], Rgb::grey(transmit[i]));
+            scene.materials.push(material);
+            let center = DVec3::X * 3.0 * i as f64;
+            scene.solids.push(Solid {
+                name: name.into(),
+                shape: Shape::Sphere { center, radius: 1.0 },
+                material: i,
+                placement: Placement::default(),
+            });
+        }
+        scene
+    }
+
+    #[test]
+    fn only_what_bends_weighs_or_totally_reflects_matters() {
+        let matters = |scene: &Scene| [0, 1].map(|m| scene.ior_matters(m));
+        assert_eq!(matters(&scene([1.5, 1.5], [0.0, 0.0])), [false, false]);
+        assert_eq!(matters(&scene([1.5, 0.9], [0.0, 0.0])), [false, true]);
+        assert_eq!(matters(&scene([1.5, 1.5], [0.8, 0.0])), [true, false]);
+        assert_eq!(matters(&scene([1.6, 1.5], [0.8, 0.0])), [true, true]);
+        let mut weighed = scene([1.5, 1.5], [0.0, 0.0]);
+        weighed.materials[1].fresnel = true;
+        assert_eq!(matters(&weighed), [false, true]);
+        let mut inside = scene([1.5, 1.5], [0.0, 0.0]);
+        inside.camera.eye = DVec3::new(3.5, 0.0, 0.0);
+        assert_eq!(matters(&inside), [false, true]);
+        inside.materials[0].ior = 1.4;
+        assert_eq!(matters(&inside), [true, true]);
+    }
+
+    #[test]
+    fn placed_solids_contain_what_they_contain() {
+        let solid = |shape| Solid {
+            name: "s".into(),
+            shape,
+            material: 0,
+            placement: Placement {
+                translate: DVec3::new(1.0, 0.0, 0.0),
+                rotate_degrees: DVec3::new(0.0, 0.0, 90.0),
+                scale: DVec3::new(2.0, 1.0, 1.0),
+            },
+        };
+        let cube = solid(Shape::Box { min: DVec3::ZERO, max: DVec3::ONE });
+        // x of the box, twice as long, points along y of the world, its y along −x.
+        assert!(cube.may_contain(DVec3::new(0.5, 1.9, 0.5), 0.0));
+        assert!(!cube.may_contain(DVec3::new(0.5, 2.1, 0.5), 0.0));
+        assert!(cube.may_contain(DVec3::new(0.5, 2.1, 0.5), 0.2));
+        assert!(!cube.may_contain(DVec3::new(1.1, 1.0, 0.5), 0.0));
+        let floor = solid(Shape::Plane { normal: DVec3::Z, offset: 0.0 });
+        assert!(floor.may_contain(DVec3::new(9.0, 9.0, -0.1), 0.0));
+        assert!(!floor.may_contain(DVec3::new(9.0, 9.0, 0.1), 0.0));
+    }
+}
