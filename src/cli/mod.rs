@@ -1,5 +1,6 @@
 //! The command line: results on standard output, messages on standard error, exit codes.
 
+mod cached;
 mod demo;
 mod inspect;
 mod render;

@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Value, json};
 
+use super::cached::{self, OpenedScene};
 use super::watch::watched;
 use super::{Common, Failure, print, read_scene, say, set, write_text};
 use crate::film::write::{Format, check_writable, picture};
 use crate::forest::grow::RayCounts;
-use crate::scene::write;
-use crate::session::{EditReport, Session};
+use crate::scene::{Scene, write};
+use crate::session::cache::OpenedCache;
+use crate::session::{Class, EditReport, Options, Session};
 
 #[derive(Debug, Args)]
 pub(crate) struct Render {
@@ -32,6 +34,10 @@ pub(crate) struct Render {
     /// standard output.
     #[arg(long, value_name = "FILE")]
     stats: Option<PathBuf>,
+    /// Use what an earlier run has kept beside the scene (NAME.rayforest-cache), so that nothing is
+    /// traced that need not be; keep it there otherwise.
+    #[arg(long)]
+    cache: bool,
     #[command(flatten)]
     common: Common,
 }
@@ -51,9 +57,11 @@ impl Render {
         }
         // A mistake in an edit is found before the trace, not after it.
         let edits = self.edits(&scene)?;
-        let opened = watched("tracing", |progress| Session::open(scene, options, progress));
-        let mut session = opened.map_err(Failure::job)?;
+        let OpenedScene { mut session, opened, stats: cache } = self.open(scene, options)?;
         let mut stats = opening_stats(&session);
+        if self.cache {
+            stats["cache"] = cache;
+        }
         let mut reports = Vec::new();
         for (assignment, edited) in edits {
             let edit = watched("tracing", |progress| session.edit(edited, progress));
@@ -69,20 +77,32 @@ impl Render {
             let text = serde_json::to_string_pretty(&stats).map_err(Failure::job)?;
             write_text(file, &text)?;
         }
-        let report = session.trace_report();
-        let rays = report.rays.total() as f64 / 1e6;
         if self.stats.as_deref() != Some(Path::new("-")) {
             let shown = self.output.display();
-            print(&format!("{shown}: traced in {:.2} s, {rays:.2} million rays", report.seconds));
+            let (how, seconds, rays) = match &opened {
+                Some(OpenedCache { cache, edit }) if edit.class < Class::Retrace => {
+                    ("opened", cache.seconds + edit.milliseconds / 1e3, edit.rays)
+                }
+                _ => ("traced", session.trace_report().seconds, session.trace_report().rays),
+            };
+            let rays = rays.total() as f64 / 1e6;
+            print(&format!("{shown}: {how} in {seconds:.2} s, {rays:.2} million rays"));
         }
         Ok(())
     }
 
+    /// Traces the scene, or opens it with what is kept of it.
+    fn open(&self, scene: Scene, options: Options) -> Result<OpenedScene, Failure> {
+        if self.cache {
+            return cached::open(&self.scene, scene, options);
+        }
+        let opened = watched("tracing", |progress| Session::open(scene, options, progress));
+        let session = opened.map_err(Failure::job)?;
+        Ok(OpenedScene { session, opened: None, stats: Value::Null })
+    }
+
     /// The scene after every edit, in order.
-    fn edits(
-        &self,
-        scene: &crate::scene::Scene,
-    ) -> Result<Vec<(&str, crate::scene::Scene)>, Failure> {
+    fn edits(&self, scene: &Scene) -> Result<Vec<(&str, Scene)>, Failure> {
         let mut scene = scene.clone();
         let mut edits = Vec::new();
         for assignment in &self.edit {

@@ -38,8 +38,10 @@ impl Format {
 /// A picture that could not be written; what was at the path before is untouched.
 #[derive(Debug)]
 pub struct WriteError {
-    path: PathBuf,
-    cause: String,
+    /// Where it was to be.
+    pub path: PathBuf,
+    /// What the system says.
+    pub cause: String,
 }
 
 impl fmt::Display for WriteError {
@@ -72,12 +74,37 @@ pub fn atomically(
     path: &Path,
     write: impl FnOnce(&mut dyn WriteSeek) -> Result<(), String>,
 ) -> Result<(), WriteError> {
-    let fail = |cause: String| WriteError { path: path.into(), cause };
-    let mut out = BufWriter::new(beside(path)?);
-    write(&mut out).map_err(&fail)?;
-    let file = out.into_inner().map_err(|e| fail(e.to_string()))?;
-    file.persist(path).map_err(|e| fail(e.error.to_string()))?;
-    Ok(())
+    let mut file = Unfinished::begin(path)?;
+    write(file.out()).map_err(|cause| WriteError { path: path.into(), cause })?;
+    file.finish()
+}
+
+/// A file in the making: what is in its place stays until it is finished. Dropped before that, it
+/// leaves nothing behind.
+pub struct Unfinished {
+    path: PathBuf,
+    out: BufWriter<tempfile::NamedTempFile>,
+}
+
+impl Unfinished {
+    /// Begins a file that will be at `path`.
+    pub fn begin(path: &Path) -> Result<Unfinished, WriteError> {
+        Ok(Unfinished { path: path.into(), out: BufWriter::new(beside(path)?) })
+    }
+
+    /// Where its bytes go.
+    pub fn out(&mut self) -> &mut dyn WriteSeek {
+        &mut self.out
+    }
+
+    /// Puts it in its place.
+    pub fn finish(self) -> Result<(), WriteError> {
+        let Unfinished { path, out } = self;
+        let fail = |cause: String| WriteError { path: path.clone(), cause };
+        let file = out.into_inner().map_err(|e| fail(e.to_string()))?;
+        file.persist(&path).map_err(|e| fail(e.error.to_string()))?;
+        Ok(())
+    }
 }
 
 /// [`atomically`] for what nobody can compute again: it is on the disc before it replaces the file

@@ -119,7 +119,7 @@ pub struct BlockStart {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Single {
     /// Index into `terms` in bits 4…31, lane in bits 0…3. Entry 5 at lane 9 is `0x59`.
-    place: u32,
+    pub(crate) place: u32,
     /// The coefficient.
     pub coefficient: f32,
 }

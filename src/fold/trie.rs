@@ -17,6 +17,16 @@ impl Marks {
     /// An opaque material that stopped a shadow ray of the parent's node.
     pub const WITNESS: Marks = Marks(4);
 
+    /// The marks with these bits, or `None` if there are none with some of them.
+    pub const fn from_bits(bits: u8) -> Option<Marks> {
+        if bits > 7 { None } else { Some(Marks(bits)) }
+    }
+
+    /// The bits, for files.
+    pub const fn bits(self) -> u8 {
+        self.0
+    }
+
     /// Both sets of marks.
     pub const fn and(self, other: Marks) -> Marks {
         Marks(self.0 | other.0)
@@ -230,6 +240,27 @@ impl Trie {
         Trie { nodes, table: Vec::new() }
     }
 
+    /// A renumbered trie of these nodes, which stand in canonical order: the root, then depth first,
+    /// children by rising factor. `None` if they do not.
+    pub fn from_canonical(nodes: Vec<TrieNode>) -> Option<Trie> {
+        let root = TrieNode { parent: ROOT, factor: NO_FACTOR, marks: Marks::default() };
+        let (first, rest) = nodes.split_first()?;
+        let mut path = vec![ROOT];
+        for (id, node) in (1u32..).zip(rest) {
+            // The last one left behind on the way back to the parent is its child before this one.
+            let mut sibling = None;
+            while *path.last()? != node.parent {
+                sibling = path.pop();
+            }
+            if sibling.is_some_and(|s| nodes[s as usize].factor >= node.factor) {
+                return None;
+            }
+            path.push(id);
+        }
+        (first.parent == root.parent && first.factor == root.factor)
+            .then(|| Trie { nodes, table: Vec::new() })
+    }
+
     /// The factors of a term from the eye on.
     pub fn factors(&self, mut id: u32) -> Vec<Factor> {
         let mut factors = Vec::new();
@@ -292,5 +323,32 @@ mod tests {
             (1..forward.nodes().len() as u32).map(|i| forward.factors(i)).collect();
         assert!(spelled.is_sorted(), "depth-first order is the order of the words");
         assert!(forward.nodes().iter().enumerate().skip(1).all(|(i, n)| (n.parent as usize) < i));
+        assert_eq!(Trie::from_canonical(forward.nodes().to_vec()), Some(forward));
+    }
+
+    #[test]
+    fn nodes_in_another_than_canonical_order_are_no_trie() {
+        let mut trie = Trie::default();
+        for i in 0..6u16 {
+            let a = trie.intern(ROOT, f(Kind::Reflect, i % 3));
+            trie.intern(a, f(Kind::Diffuse, i));
+        }
+        let sound = trie.renumbered(&trie.canonical_ranks()).nodes().to_vec();
+        assert!(Trie::from_canonical(sound.clone()).is_some());
+        assert_eq!(Trie::from_canonical(Vec::new()), None);
+        for (id, node) in sound.iter().enumerate() {
+            for parent in (0..=sound.len() as u32).filter(|p| *p != node.parent) {
+                let mut other = sound.clone();
+                other[id].parent = parent;
+                // Only a child of a node moved below another one may still be in order.
+                let moved = Trie::from_canonical(other);
+                assert!(moved.is_none() || (parent as usize) < id, "{id} below {parent}");
+            }
+            let mut other = sound.clone();
+            other.swap(id, (id + 1) % sound.len());
+            assert_eq!(Trie::from_canonical(other), None, "{id} and the next one swapped");
+        }
+        let twice = [sound[0], sound[1], TrieNode { parent: 0, ..sound[1] }];
+        assert_eq!(Trie::from_canonical(twice.to_vec()), None, "one product twice");
     }
 }

@@ -45,6 +45,17 @@ impl Ends {
         Ends(reflected as u8 | (transmitted as u8) << 3 | u8::from(total) << 6)
     }
 
+    /// The ends with these bits, or `None` if no ends have them.
+    pub fn from_bits(bits: u8) -> Option<Ends> {
+        let branches = BRANCHES.len() as u8;
+        (bits & 7 < branches && bits >> 3 & 7 < branches && bits < 128).then_some(Ends(bits))
+    }
+
+    /// The bits, for files.
+    pub fn bits(self) -> u8 {
+        self.0
+    }
+
     /// The mirror ray's branch.
     #[inline(always)]
     pub fn reflected(self) -> Branch {
@@ -352,9 +363,12 @@ mod tests {
                 for total in [false, true] {
                     let ends = Ends::new(a, b, total);
                     assert_eq!((ends.reflected(), ends.transmitted(), ends.total()), (a, b, total));
+                    assert_eq!(Ends::from_bits(ends.bits()), Some(ends));
                 }
             }
         }
+        let sound = (0..=255).filter(|bits| Ends::from_bits(*bits).is_some()).count();
+        assert_eq!(sound, 2 * BRANCHES.len() * BRANCHES.len());
         assert_eq!(size_of::<Node>(), 24);
         assert_eq!(size_of::<LightHit>(), 16);
     }

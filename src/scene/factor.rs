@@ -80,10 +80,17 @@ impl Factor {
         (self.0 >> 16 & 0xff) as usize
     }
 
-    /// The bits, for hashing.
+    /// The bits, for hashing and for files.
     #[inline(always)]
     pub fn bits(self) -> u32 {
         self.0
+    }
+
+    /// The factor with these bits, or `None` if no factor has them.
+    #[inline(always)]
+    pub fn from_bits(bits: u32) -> Option<Factor> {
+        let known = bits >> 28 < KINDS.len() as u32 && bits & 0x0f00_0000 == 0;
+        known.then_some(Factor(bits))
     }
 
     /// Whether it leads to a further node of the ray tree.

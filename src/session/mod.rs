@@ -1,5 +1,6 @@
 //! The program without a window: a scene in, a picture out, and the least work for every edit.
 
+pub mod cache;
 mod canvas;
 pub mod cost;
 pub mod inspect;

@@ -10,6 +10,7 @@ use super::command::Command;
 use super::files::Files;
 use super::handles::{Handles, Stage};
 use super::inspector::{Known, Outcome, Selection, inspector_ui, paths};
+use super::keep::kept_text;
 use super::menu::{MenuState, menu_ui};
 use super::mixer::Mixer;
 use super::notice::Notices;
@@ -156,6 +157,7 @@ impl App {
         for event in self.live.take_events() {
             match event {
                 Event::Exported(path) => self.notices.say(format!("wrote {}", path.display())),
+                Event::Kept { path, bytes } => self.notices.say(kept_text(&path, bytes)),
                 Event::Failed(message) => self.notices.error(message),
             }
         }
@@ -194,6 +196,7 @@ impl App {
                 handles: !self.handles.hidden,
                 mixer: self.mixer.open,
                 subject: self.subject(),
+                keep: self.keep_offer(),
             };
             commands.extend(menu_ui(ui, &state, &mut self.settings));
         });
@@ -373,7 +376,8 @@ impl App {
             | Command::OpenRecent(_)
             | Command::Save
             | Command::SaveAs
-            | Command::Export => self.run_file_command(ctx, command),
+            | Command::Export
+            | Command::Keep => self.run_file_command(ctx, command),
         }
     }
 

@@ -17,6 +17,8 @@ pub(super) enum Command {
     SaveAs,
     /// Asks how and where to write a picture.
     Export,
+    /// Writes what was traced beside the scene file.
+    Keep,
     /// Leaves the program.
     Quit,
     /// Takes the latest step back.
@@ -49,7 +51,7 @@ pub(super) enum Command {
     Handles,
     /// Whether the light mixer shows.
     Mixer,
-    /// Stops the running trace or export.
+    /// Stops the running trace, export or keeping.
     Stop,
     /// Traces what a stop left out.
     Resume,
@@ -67,6 +69,7 @@ impl Command {
             Command::Save => "Save",
             Command::SaveAs => "Save as…",
             Command::Export => "Export picture…",
+            Command::Keep => "Keep traced",
             Command::Quit => "Quit",
             Command::Undo => "Undo",
             Command::Redo => "Redo",
@@ -97,6 +100,9 @@ impl Command {
             Command::Save => "Writes the changed values into the scene file; its comments stay",
             Command::SaveAs => "Saves to another file; paths of meshes are adapted",
             Command::Export => "Writes the picture as PNG or OpenEXR, at its own size or another",
+            Command::Keep => {
+                "Writes what was traced beside the scene file, so that the next opening casts no ray"
+            }
             Command::Quit => "Closes the window",
             Command::Undo => "Takes the latest change back",
             Command::Redo => "Makes the change again that was taken back last",
@@ -115,7 +121,7 @@ impl Command {
             }
             Command::Handles => "Handles in the picture that move and turn the lights",
             Command::Mixer => "All lights side by side: on, solo, stops, colour, temperature",
-            Command::Stop => "Stops the trace or the export; the last whole picture stays",
+            Command::Stop => "Stops what runs; the last whole picture stays",
             Command::Resume => "Traces the picture that was stopped",
         }
     }
@@ -144,6 +150,7 @@ impl Command {
             Command::Mixer => keys(Modifiers::NONE, Key::L),
             Command::New(_)
             | Command::OpenRecent(_)
+            | Command::Keep
             | Command::AddLight
             | Command::AddMaterial
             | Command::Assign

@@ -215,6 +215,7 @@ impl App {
                 let form = ExportForm::new(self.document.scene().picture.size);
                 self.files.show(Modal::Export(form));
             }
+            Command::Keep => self.keep_traced(),
             _ => {}
         }
     }
@@ -253,7 +254,7 @@ impl App {
         self.selection = Selection::Scene;
         (self.picked, self.renaming) = (None, None);
         self.mixer.forget();
-        self.show_scene();
+        self.show_opened();
     }
 
     /// Saves to the document's file, or asks for one.

@@ -4,6 +4,7 @@ use eframe::egui::{Align, Button, Label, Layout, MenuBar, Ui};
 
 use super::command::Command;
 use super::inspector::Selection;
+use super::keep::KeepOffer;
 use super::lists::{Subject, offer_ui};
 use crate::document::settings::{Settings, Theme};
 use crate::document::{Document, TEMPLATES};
@@ -21,6 +22,8 @@ pub(super) struct MenuState<'a> {
     pub(super) mixer: bool,
     /// What commands about lights and materials are about.
     pub(super) subject: Subject,
+    /// Whether what was traced can be kept.
+    pub(super) keep: KeepOffer,
 }
 
 /// Shows the menu bar and its buttons; gives the command that was chosen. Theme and zoom are set at
@@ -32,7 +35,7 @@ pub(super) fn menu_ui(
 ) -> Option<Command> {
     let mut chosen = None;
     MenuBar::new().ui(ui, |ui| {
-        ui.menu_button("File", |ui| file_menu(ui, settings, &mut chosen))
+        ui.menu_button("File", |ui| file_menu(ui, state, settings, &mut chosen))
             .response
             .on_hover_text("Open, save, export");
         ui.menu_button("Edit", |ui| edit_menu(ui, state, &mut chosen))
@@ -87,7 +90,12 @@ fn step(document: &Document, command: Command) -> Option<&str> {
     if command == Command::Undo { document.undo_name() } else { document.redo_name() }
 }
 
-fn file_menu(ui: &mut Ui, settings: &Settings, chosen: &mut Option<Command>) {
+fn file_menu(
+    ui: &mut Ui,
+    state: &MenuState<'_>,
+    settings: &Settings,
+    chosen: &mut Option<Command>,
+) {
     ui.menu_button("New", |ui| {
         for (i, (name, _)) in TEMPLATES.iter().enumerate() {
             if ui.button(*name).on_hover_text(Command::New(i).about()).clicked() {
@@ -119,8 +127,18 @@ fn file_menu(ui: &mut Ui, settings: &Settings, chosen: &mut Option<Command>) {
     item(ui, Command::SaveAs, chosen);
     ui.separator();
     item(ui, Command::Export, chosen);
+    keep_item(ui, &state.keep, chosen);
     ui.separator();
     item(ui, Command::Quit, chosen);
+}
+
+fn keep_item(ui: &mut Ui, offer: &KeepOffer, chosen: &mut Option<Command>) {
+    let button = with_keys(ui, Command::Keep, Command::Keep.name());
+    let response = ui.add_enabled(offer.possible, button).on_disabled_hover_text(&offer.about);
+    if response.on_hover_text(&offer.about).clicked() {
+        *chosen = Some(Command::Keep);
+        ui.close();
+    }
 }
 
 fn edit_menu(ui: &mut Ui, state: &MenuState<'_>, chosen: &mut Option<Command>) {

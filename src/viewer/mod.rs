@@ -11,6 +11,7 @@ mod files;
 mod handles;
 mod hints;
 mod inspector;
+mod keep;
 mod lists;
 pub mod measure;
 mod menu;

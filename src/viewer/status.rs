@@ -32,7 +32,7 @@ pub(super) fn status_ui(ui: &mut Ui, status: &Status, shown: Option<&Shown>) -> 
             }
             None => {
                 if let Some(last) = &status.last {
-                    ui.label(edit_text(last)).on_hover_text(edit_about(last));
+                    ui.label(edit_text(last, status.opened)).on_hover_text(edit_about(last));
                 }
             }
         }
@@ -67,8 +67,8 @@ fn pending_text(pixels: u64) -> String {
     }
 }
 
-/// The last edit in one line: class, time, rays.
-fn edit_text(report: &EditReport) -> String {
+/// The last edit, or opening, in one line: class, time, rays.
+fn edit_text(report: &EditReport, opened: bool) -> String {
     let rays = report.rays.total();
     let time = match report.milliseconds {
         ms if ms < 1000.0 => format!("{ms:.1} ms"),
@@ -79,7 +79,11 @@ fn edit_text(report: &EditReport) -> String {
         n if n < 10_000 => format!("{n} rays"),
         n => format!("{:.2} million rays", n as f64 / 1e6),
     };
-    format!("{} · {time} · {cast}", report.class)
+    let class = match opened {
+        true => "opened from what was kept".to_owned(),
+        false => report.class.to_string(),
+    };
+    format!("{class} · {time} · {cast}")
 }
 
 fn edit_about(report: &EditReport) -> String {
@@ -123,8 +127,10 @@ mod tests {
             pixels: 0,
             milliseconds: 3.24,
         };
-        assert_eq!(edit_text(&report), "reshade · 3.2 ms · 0 rays");
+        assert_eq!(edit_text(&report, false), "reshade · 3.2 ms · 0 rays");
+        let opened = "opened from what was kept · 3.2 ms · 0 rays";
+        assert_eq!(edit_text(&report, true), opened);
         let slow = EditReport { class: Class::Retrace, milliseconds: 2345.0, ..report };
-        assert_eq!(edit_text(&slow), "retrace · 2.3 s · 0 rays");
+        assert_eq!(edit_text(&slow, false), "retrace · 2.3 s · 0 rays");
     }
 }

@@ -47,6 +47,7 @@ pub(super) struct Work {
 pub(super) enum Target {
     Trace,
     Export,
+    Keep,
 }
 
 /// The scene shown, ready for single rays.

@@ -54,10 +54,12 @@ pub struct Shown {
 /// What the threads are doing, for the status line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Status {
-    /// The trace or export that runs.
+    /// The trace, opening, export or keeping that runs.
     pub job: Option<Job>,
     /// The latest finished edit.
     pub last: Option<EditReport>,
+    /// Whether that was the opening of a kept cache, which needed no ray.
+    pub opened: bool,
     /// Whether the picture shown is whole and shows the newest wanted scene.
     pub in_step: bool,
     /// Whether the newest wanted scene is not shown because its trace was cancelled or failed: the
@@ -67,11 +69,14 @@ pub struct Status {
     pub pending: u64,
     /// Bytes of kept trees, matrix and highlight lists.
     pub bytes: u64,
+    /// Bytes of matrix and highlight lists of the whole picture: what [`Live::keep`] writes, before
+    /// it is compressed.
+    pub matrix_bytes: u64,
     /// The budget for them.
     pub budget: u64,
 }
 
-/// A running trace or export.
+/// A running trace, opening, export or keeping.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Job {
     /// What it does and why: "tracing: camera.eye moves rays".
@@ -85,7 +90,14 @@ pub struct Job {
 pub enum Event {
     /// A picture file was written.
     Exported(PathBuf),
-    /// A trace or an export failed: what, why, and the way out.
+    /// What was traced was written to a cache.
+    Kept {
+        /// The cache.
+        path: PathBuf,
+        /// Its length.
+        bytes: u64,
+    },
+    /// Something failed: what, why, and the way out.
     Failed(String),
 }
 
@@ -147,7 +159,25 @@ impl Live {
 
     /// Makes `scene` the wanted one. A running trace goes on if the edit does not concern its rays.
     pub fn want(&self, scene: Arc<Scene>) {
-        self.order(Message::Want(scene, self.board.wish()));
+        self.wish(scene, None);
+    }
+
+    /// The same of a scene that is opened, for which `cache` may be kept: it is opened before
+    /// anything is traced, and how it differs from the scene costs what an edit costs. If it does not
+    /// fit, an event tells why, and the scene is traced; if there is no such file, it is just traced.
+    pub fn want_kept(&self, scene: Arc<Scene>, cache: PathBuf) {
+        self.wish(scene, Some(cache));
+    }
+
+    fn wish(&self, scene: Arc<Scene>, cache: Option<PathBuf>) {
+        let number = self.board.wish();
+        self.order(Message::Want { scene, number, cache });
+    }
+
+    /// Writes what was traced to a cache, without trees, once the picture is whole and while nothing
+    /// else is to be done: an edit comes first, and the file then holds the edited picture.
+    pub fn keep(&self, cache: PathBuf) {
+        self.order(Message::Keep(cache));
     }
 
     /// The newest picture, if it is newer than the one taken before.

@@ -1,9 +1,12 @@
 //! The thread that owns the pictures: takes wishes, shades what needs no ray, sends off the rest.
 
 mod exports;
+mod keep;
 mod mend;
+mod show;
 
 use std::collections::VecDeque;
+use std::path::PathBuf;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -12,21 +15,29 @@ use std::time::{Duration, Instant};
 use rayon::ThreadPool;
 
 use super::badges::Badges;
-use super::board::{self, Board, Target};
+use super::board::{Board, Target};
 use super::mending::Mending;
 use super::tracer::{self, Compiled, Control, Outcome, staged};
-use super::{Event, Export, Shown, Stage, Status, export, guarded, pool};
+use super::{Event, Export, Stage, export, guarded, pool};
 use crate::forest::Forest;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::scene::change::Change;
-use crate::session::regrow::Patch;
+use crate::session::regrow::{Patch, Regrow};
 use crate::session::{Class, EditReport, Options, Session, Work};
+use keep::Keeping;
 
 /// What the shader is told, by the window and by the other threads.
 pub(super) enum Message {
-    /// A scene, and how many wishes there were with it.
-    Want(Arc<Scene>, u64),
+    Want {
+        scene: Arc<Scene>,
+        /// How many wishes there were with it.
+        number: u64,
+        /// A cache that may hold it.
+        cache: Option<PathBuf>,
+    },
+    /// What was traced, to be written there.
+    Keep(PathBuf),
     Cancel(Target),
     Resume,
     Watch(Vec<String>),
@@ -72,10 +83,12 @@ struct Preview {
     scene: Arc<Scene>,
 }
 
-/// A trace that the tracer works on.
+/// A trace that the tracer works on, or a cache that it opens.
 struct Running {
     id: u64,
     scene: Arc<Scene>,
+    /// What is done, and why.
+    verb: &'static str,
     reason: String,
     control: Arc<Control>,
     reuse: Arc<Mutex<Option<Forest>>>,
@@ -87,6 +100,21 @@ struct Running {
 }
 
 impl Running {
+    /// A trace whose number is not known yet.
+    fn new(scene: Arc<Scene>, taken: Instant) -> Running {
+        Running {
+            id: 0,
+            scene,
+            verb: "tracing",
+            reason: String::new(),
+            control: Arc::default(),
+            reuse: Arc::default(),
+            taken,
+            dropped: false,
+            mending: None,
+        }
+    }
+
     /// Goes on if its rays are those of `wanted`.
     fn consider(&mut self, wanted: &Scene) {
         if Change::between(&self.scene, wanted).moves_rays.is_some() {
@@ -139,7 +167,12 @@ pub(super) struct Shader {
     job: Option<Running>,
     jobs: u64,
     hold: Option<Hold>,
+    /// A cache to be opened before the wanted scene is traced.
+    cache: Option<PathBuf>,
+    keeping: Option<Keeping>,
     last: Option<EditReport>,
+    /// Whether that was the opening of a cache.
+    opened: bool,
     /// Until when jobs leave the cores to edits.
     busy_until: Option<Instant>,
     /// Exports at the size of the picture, until it is whole.
@@ -148,8 +181,9 @@ pub(super) struct Shader {
     badges: Badges,
     /// The number of the newest wish.
     heard: u64,
-    /// The progress last told.
+    /// The progress last told, and when.
     told: (u64, u64),
+    told_at: Instant,
     /// When a picture was shown last.
     shown_at: Option<Instant>,
 }
@@ -176,13 +210,17 @@ impl Shader {
             job: None,
             jobs: 0,
             hold: None,
+            cache: None,
+            keeping: None,
             last: None,
+            opened: false,
             busy_until: None,
             waiting: Vec::new(),
             exports: VecDeque::new(),
             badges: Badges::default(),
             heard: 0,
             told: (0, 0),
+            told_at: Instant::now(),
             shown_at: None,
         }
     }
@@ -210,7 +248,7 @@ impl Shader {
     fn patience(&self) -> Duration {
         let working = self.job.is_some() || !self.exports.is_empty();
         let yielded = self.busy_until.map(|t| t.saturating_duration_since(Instant::now()));
-        let waits = [working.then_some(TICK), yielded, self.badges.wait()];
+        let waits = [working.then_some(TICK), yielded, self.badges.wait(), self.keeping_wait()];
         waits.into_iter().flatten().min().unwrap_or(Duration::from_secs(3600))
     }
 
@@ -228,16 +266,21 @@ impl Shader {
             self.preview.as_mut().map(|p| &mut p.session).or(self.whole.as_mut())
         {
             self.badges.work(shown, &self.board);
+            self.work_on_keeping();
+        }
+        if self.in_step() {
+            self.cache = None;
         }
         self.tell_progress();
     }
 
     fn handle(&mut self, message: Message) {
         match message {
-            Message::Want(scene, number) => {
+            Message::Want { scene, number, cache } => {
                 self.heard = self.heard.max(number);
-                self.want(scene);
+                self.want(scene, cache);
             }
+            Message::Keep(path) => self.keep(path),
             Message::Cancel(target) => self.cancel(target),
             Message::Resume => self.resume(),
             Message::Watch(paths) => self.badges.watch(paths),
@@ -252,11 +295,14 @@ impl Shader {
         }
     }
 
-    fn want(&mut self, scene: Arc<Scene>) {
+    fn want(&mut self, scene: Arc<Scene>, cache: Option<PathBuf>) {
         let taken = Instant::now();
         let same = |wanted: &Arc<Scene>| Arc::ptr_eq(wanted, &scene) || *wanted == scene;
         if !self.wanted.as_ref().is_some_and(same) {
             self.wanted = Some(scene);
+            self.cache = cache.or(self.cache.take());
+            self.interrupt_keeping();
+            self.opened = false;
             self.settle(taken);
         }
     }
@@ -329,6 +375,9 @@ impl Shader {
 
     /// Sends a scene to the tracer, which is free.
     fn begin(&mut self, scene: Arc<Scene>, work: Work, taken: Instant) {
+        if let Some(cache) = self.cache.take() {
+            return self.begin_opening(scene, cache, taken);
+        }
         let known = self.whole.as_ref().map(compiled);
         let reason = work.reason().to_owned();
         let mending = match (work, &mut self.whole) {
@@ -341,23 +390,36 @@ impl Shader {
             Some(_) => None,
             None => self.whole.as_mut().map(Session::take_trees),
         };
-        let (control, reuse) = (Arc::<Control>::default(), Arc::new(Mutex::new(trees)));
-        self.jobs += 1;
-        let id = self.jobs;
-        let task = tracer::Task {
-            id,
-            scene: scene.clone(),
-            control: control.clone(),
-            known,
-            reuse: reuse.clone(),
-            regrow: mending.as_ref().map(|mending| mending.regrow.clone()),
-        };
-        self.traces.send(task).expect("the tracer lives as long as the shader");
-        let dropped = false;
-        self.job = Some(Running { id, scene, reason, control, reuse, taken, dropped, mending });
+        let reuse = Arc::new(Mutex::new(trees));
+        let regrow = mending.as_ref().map(|mending| mending.regrow.clone());
+        let job = Running { reason, reuse, mending, ..Running::new(scene, taken) };
+        self.send(job, known, regrow, None);
         if self.mending().is_some() {
             self.show();
         }
+    }
+
+    /// Sends a job to the tracer, which is free.
+    fn send(
+        &mut self,
+        mut job: Running,
+        known: Option<Compiled>,
+        regrow: Option<Arc<Regrow>>,
+        cache: Option<PathBuf>,
+    ) {
+        self.jobs += 1;
+        job.id = self.jobs;
+        let task = tracer::Task {
+            id: job.id,
+            scene: job.scene.clone(),
+            control: job.control.clone(),
+            known,
+            reuse: job.reuse.clone(),
+            regrow,
+            cache,
+        };
+        self.traces.send(task).expect("the tracer lives as long as the shader");
+        self.job = Some(job);
     }
 
     /// Takes a picture before the whole one.
@@ -394,6 +456,10 @@ impl Shader {
             Outcome::Whole(session) if !job.dropped && self.hold.is_none() => {
                 self.take_whole(*session, job);
             }
+            Outcome::Opened(session) if !job.dropped && self.hold.is_none() => {
+                self.take_opened(*session, job.taken);
+            }
+            Outcome::NotOpened(error) if !job.dropped => self.not_opened(&error),
             Outcome::Regrown if !job.dropped && self.hold.is_none() => self.take_mended(job),
             Outcome::Cancelled if !job.dropped && self.hold.is_none() => self.put_on_hold(false),
             Outcome::Failed(text) if !job.dropped => {
@@ -417,7 +483,7 @@ impl Shader {
             let _ = session.edit_without_rays(wanted);
         }
         report.milliseconds = job.taken.elapsed().as_secs_f64() * 1e3;
-        self.last = Some(report);
+        (self.last, self.opened) = (Some(report), false);
         self.preview = None;
         let old = self.whole.replace(session);
         self.show();
@@ -435,6 +501,7 @@ impl Shader {
         for export in std::mem::take(&mut self.waiting) {
             self.refuse(&export, UNTRACED);
         }
+        self.refuse_to_keep(UNTRACED);
     }
 
     fn cancel(&mut self, target: Target) {
@@ -444,6 +511,7 @@ impl Shader {
                 self.put_on_hold(false);
             }
             (Target::Export, _, Some(export)) => export.progress.cancel(),
+            (Target::Keep, ..) => self.keeping = None,
             _ => {}
         }
     }
@@ -451,7 +519,7 @@ impl Shader {
     /// A panic left the pictures in an unknown state: nothing of them is kept.
     fn begin_anew(&mut self, text: String) {
         self.job.iter_mut().for_each(Running::drop_it);
-        (self.whole, self.preview) = (None, None);
+        (self.whole, self.preview, self.keeping) = (None, None, None);
         let scene = self.wanted.clone();
         self.hold = scene.map(|scene| Hold { scene, failed: true });
         self.board.tell(Event::Failed(text));
@@ -478,64 +546,6 @@ impl Shader {
         let wanted = self.wanted.as_ref();
         shown.zip(wanted).is_some_and(|(whole, w)| Arc::ptr_eq(&whole.shared_scene(), w))
     }
-
-    /// Hands the newest picture to the window.
-    fn show(&mut self) {
-        self.shown_at = Some(Instant::now());
-        if let Some((frame, scene, geometry)) = self.mending().map(|mending| {
-            (mending.frame(), mending.scene.clone(), mending.regrow.geometry.clone())
-        }) {
-            self.board.show(Shown { frame, scene, stage: Stage::Mending }, geometry);
-            self.badges.renew(Stage::Mending, &self.board);
-            self.report();
-            return self.board.wake();
-        }
-        let (session, scene, stage) = match (&self.preview, &self.whole) {
-            (Some(p), _) => (&p.session, p.scene.clone(), p.stage),
-            (None, Some(whole)) => (whole, whole.shared_scene(), Stage::Whole),
-            (None, None) => return,
-        };
-        let shown = Shown { frame: session.shared_frame(), scene, stage };
-        self.board.show(shown, session.shared_geometry());
-        self.badges.renew(stage, &self.board);
-        self.report();
-        self.board.wake();
-    }
-
-    /// Hands the newest status to the window.
-    fn report(&self) {
-        let shown = self.preview.as_ref().map(|p| &p.session).or(self.whole.as_ref());
-        let status = Status {
-            job: None,
-            last: self.last.clone(),
-            in_step: self.in_step(),
-            held: self.hold.is_some(),
-            pending: self.mending().map_or(0, Mending::pixels),
-            bytes: self.whole.as_ref().or(shown).map_or(0, Session::kept_bytes),
-            budget: self.options.memory,
-        };
-        let trace = self.job.as_ref().filter(|job| !job.dropped).map(|job| board::Work {
-            what: format!("tracing: {}", job.reason),
-            progress: job.control.progress.clone(),
-            target: Target::Trace,
-        });
-        let export = || {
-            let Pending { what, progress } = self.exports.front()?;
-            let (what, progress) = (what.clone(), progress.clone());
-            Some(board::Work { what, progress, target: Target::Export })
-        };
-        self.board.report(status, trace.or_else(export), self.heard);
-    }
-
-    /// Wakes the window if a job has come further.
-    fn tell_progress(&mut self) {
-        let trace = self.job.as_ref().map(|job| &job.control.progress);
-        let progress = trace.or(self.exports.front().map(|export| &export.progress));
-        let steps = progress.map_or((0, 0), |progress| progress.steps());
-        if std::mem::replace(&mut self.told, steps) != steps {
-            self.board.wake();
-        }
-    }
 }
 
 /// A session's geometry, with the scene that it was compiled of.
@@ -546,12 +556,19 @@ fn compiled(session: &Session) -> Compiled {
 /// The messages without wishes that newer ones follow.
 fn newest_wish(messages: impl Iterator<Item = Message>) -> Vec<Message> {
     let mut messages: Vec<Message> = messages.collect();
-    let is_wish = |message: &Message| matches!(message, Message::Want(..));
+    let is_wish = |message: &Message| matches!(message, Message::Want { .. });
     let newest = messages.iter().rposition(is_wish);
-    let mut at = 0;
-    messages.retain(|message| {
+    let (mut at, mut latest) = (0, None);
+    messages.retain_mut(|message| {
         at += 1;
-        !is_wish(message) || Some(at - 1) == newest
+        let Message::Want { cache, .. } = message else { return true };
+        // An edit that follows an opening at once is an edit of what is opened.
+        latest = cache.take().or(latest.take());
+        let stays = Some(at - 1) == newest;
+        if stays {
+            *cache = latest.take();
+        }
+        stays
     });
     messages
 }

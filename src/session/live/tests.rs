@@ -1,5 +1,7 @@
 //! The live session, held to the session: same bytes, fewer rays, nothing that hangs.
 
+mod keep;
+
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};

@@ -1,5 +1,6 @@
 //! The thread that traces: one scene at a time, coarse first.
 
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -14,6 +15,7 @@ use crate::geometry::Geometry;
 use crate::progress::{Cancelled, Progress};
 use crate::scene::Scene;
 use crate::scene::change::Change;
+use crate::session::cache::{CacheError, Fault};
 use crate::session::regrow::Regrow;
 use crate::session::trace::{Kept, TraceError};
 use crate::session::{Options, Session, Start};
@@ -30,6 +32,8 @@ pub(super) struct Task {
     pub(super) reuse: Arc<Mutex<Option<Forest>>>,
     /// What is grown instead of everything, after a coarse picture of everything.
     pub(super) regrow: Option<Arc<Regrow>>,
+    /// What is opened instead of tracing anything.
+    pub(super) cache: Option<PathBuf>,
 }
 
 /// A scene and what was compiled of its solids.
@@ -61,6 +65,10 @@ pub(super) struct Control {
 pub(super) enum Outcome {
     /// With the whole picture.
     Whole(Box<Session>),
+    /// With what a cache held: the session of a scene that may differ from the wanted one.
+    Opened(Box<Session>),
+    /// Without what a cache should hold.
+    NotOpened(CacheError),
     /// With all patches of the plan, which were sent.
     Regrown,
     /// After its first stage, because another scene waits.
@@ -109,6 +117,9 @@ struct Tracer {
 
 impl Tracer {
     fn work(&mut self, task: &Task) -> Result<Outcome, TraceError> {
+        if let Some(cache) = &task.cache {
+            return self.open(task, cache);
+        }
         let outcome = self.trace(task)?;
         let (Some(regrow), true) = (&task.regrow, outcome.is_none()) else {
             return Ok(outcome.unwrap_or(Outcome::Superseded));
@@ -123,9 +134,18 @@ impl Tracer {
         Ok(Outcome::Regrown)
     }
 
+    fn open(&self, task: &Task, cache: &Path) -> Result<Outcome, TraceError> {
+        let (pool, progress) = (self.pool.clone(), &task.control.progress);
+        match Session::recall(&task.scene, cache, pool, self.options, progress) {
+            Ok((session, _)) => Ok(Outcome::Opened(Box::new(session))),
+            Err(CacheError { fault: Fault::Stopped(error), .. }) => Err(error),
+            Err(error) => Ok(Outcome::NotOpened(error)),
+        }
+    }
+
     /// The whole picture, or `None` if another scene waits, or only some of it is wanted.
     fn trace(&mut self, task: &Task) -> Result<Option<Outcome>, TraceError> {
-        let Task { id, scene, control, known: _, reuse, regrow } = task;
+        let Task { id, scene, control, known: _, reuse, regrow, cache: _ } = task;
         let geometry = match regrow {
             Some(regrow) => regrow.geometry.clone(),
             None => self.geometry(task)?,

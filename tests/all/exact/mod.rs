@@ -1,6 +1,7 @@
 //! Held bit for bit: pictures after edits, histories, threads and memory budgets; and the floors.
 
 mod badges;
+mod cache;
 mod classes;
 mod comes_alive;
 mod floors;

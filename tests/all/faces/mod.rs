@@ -1,6 +1,7 @@
 //! Held at the faces: what a person or a script sees of the program.
 
 mod bad_input;
+mod cache;
 mod command_line;
 #[cfg(target_os = "linux")]
 mod display;

@@ -54,6 +54,7 @@ impl Shader {
                 }
                 let milliseconds = job.taken.elapsed().as_secs_f64() * 1e3;
                 self.last = Some(EditReport { milliseconds, ..report });
+                self.opened = false;
                 self.preview = None;
                 self.show();
             }

@@ -6,6 +6,7 @@ mod edits;
 mod export;
 mod files;
 mod handles;
+mod keep;
 mod keyboard;
 mod lists;
 mod mixer;
