@@ -26,6 +26,15 @@
 //!   stopped, the trees keep a *frontier* record, and the terms a frontier mark; an edit that makes a
 //!   frontier live is the only edit of a colour or coefficient that costs rays. Fresnel's weights are
 //!   geometry: a branch that they leave too faint is no parameter's to wake.
+//! * **Kept trees answer rays.** A kept tree holds what rays met, a primitive and a distance per node,
+//!   a solid per shadow crossing, and nothing that depends on parameters. Growing reads it: a ray that
+//!   it knows is not cast, and everything else, normals, media, cosines, is computed again by the one
+//!   code that a first trace runs. An edit that shading cannot follow is a
+//!   [`Plan`](session::plan::Plan): the pixels concerned, found in the matrix and the frontier; only
+//!   their blocks are grown and folded again, and put into the matrix when all are done.
+//! * **Keys.** A light that is moved gets a new key, so that records of where it was answer for
+//!   nothing; one that is removed leaves a gap in the list of factors, which is black. Materials are
+//!   not in the trees at all.
 //! * **Order.** Terms are numbered by their factors along the path, never by discovery; a pixel is
 //!   summed from +0 in that order, its planes first, then its single coefficients; vector lanes run
 //!   across pixels. Thread count, tile order, released memory and edits therefore change no bit.
@@ -35,8 +44,9 @@
 //!   what cannot be hit.
 //! * **The window waits for nobody.** A [`Live`](session::live::Live) session has a thread that owns
 //!   the pictures and shades, one that traces, one that writes pictures; calls return at once, the
-//!   newest wish wins, a lock is held only to move pointers. What is on the screen is always a
-//!   session with kept trees, coarse or whole, so that it can be edited while the next one is traced.
+//!   newest wish wins, a lock is held only to move pointers. What is on the screen is a session,
+//!   coarse or whole, so that it can be edited while the next one is traced; or the whole one while
+//!   some of its pixels are grown again, all others being exact.
 //! * **Widgets write into a clone of the scene**; what differs is one step of the document's history
 //!   and one wish to the session. The inspector visits the same list of fields as the reader and the
 //!   writer of scene files: a parameter without a control cannot be written.
