@@ -41,7 +41,7 @@ fn edited(scene: &Scene, random: &mut Random) -> (Scene, String) {
         }
         1 if lights < 4 => {
             let at = random.below(lights + 1);
-            edited.lights.insert(at, Light::new(&format!("light-{}", random.below(1000))));
+            edited.lights.insert(at, Light::new(format!("light-{}", random.below(1000))));
             format!("a light at {at}")
         }
         2 if lights > 0 => format!("{} gone", edited.lights.remove(random.below(lights)).name),
@@ -85,7 +85,7 @@ fn edited(scene: &Scene, random: &mut Random) -> (Scene, String) {
         _ => {
             let used = |m: usize| scene.solids.iter().any(|solid| solid.material == m);
             if used(material) {
-                edited.materials.push(Material::new(&format!("new-{}", random.below(1000))));
+                edited.materials.push(Material::new(format!("new-{}", random.below(1000))));
                 "a material more".into()
             } else {
                 edited.materials.remove(material);
