@@ -22,7 +22,12 @@ pub(crate) struct OpenedScene {
 /// Opens a scene with the cache beside its file. Where that does not fit, or the difference asked
 /// for rays, the cache is written anew; a failure to do so is told, and the picture is made all the
 /// same.
-pub(crate) fn open(file: &Path, scene: Scene, options: Options) -> Result<OpenedScene, Failure> {
+pub(crate) fn open(
+    file: &Path,
+    scene: Scene,
+    options: Options,
+    trees: bool,
+) -> Result<OpenedScene, Failure> {
     let path = cache::path_of(file);
     let cached = watched("opening", |progress| {
         Session::open_cached(scene.clone(), &path, options, progress)
@@ -33,7 +38,7 @@ pub(crate) fn open(file: &Path, scene: Scene, options: Options) -> Result<Opened
             let EditReport { class, rays, .. } = edit;
             let mut line = format!("{}: read in {:.2} s", path.display(), cache.seconds);
             line += &format!(", {class}, {} rays", rays.total());
-            let written = (*class >= Class::Regrow).then(|| keep(&session, &path));
+            let written = (*class >= Class::Regrow).then(|| keep(&session, &path, trees));
             tell(line, written.as_ref());
             let stats = json!({
                 "read": figures(cache),
@@ -49,7 +54,7 @@ pub(crate) fn open(file: &Path, scene: Scene, options: Options) -> Result<Opened
             let session = opened.map_err(Failure::job)?;
             // A file that is not ours is not ours to replace.
             let foreign = error.fault == Fault::Foreign;
-            let written = (!foreign).then(|| keep(&session, &path));
+            let written = (!foreign).then(|| keep(&session, &path, trees));
             let reason = error.cause();
             tell(format!("{}: not used: {reason}", path.display()), written.as_ref());
             let stats = json!({
@@ -61,8 +66,8 @@ pub(crate) fn open(file: &Path, scene: Scene, options: Options) -> Result<Opened
     }
 }
 
-fn keep(session: &Session, path: &Path) -> Result<CacheReport, CacheError> {
-    watched("keeping", |progress| cache::write(session, path, false, progress))
+fn keep(session: &Session, path: &Path, trees: bool) -> Result<CacheReport, CacheError> {
+    watched("keeping", |progress| cache::write(session, path, trees, progress))
 }
 
 /// One line on what was read, and what was written if anything was.

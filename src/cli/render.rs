@@ -38,6 +38,10 @@ pub(crate) struct Render {
     /// traced that need not be; keep it there otherwise.
     #[arg(long)]
     cache: bool,
+    /// With --cache, keep the ray trees too: larger, but edits after the next opening that grow them
+    /// cast fewer rays.
+    #[arg(long, requires = "cache")]
+    cache_trees: bool,
     #[command(flatten)]
     common: Common,
 }
@@ -94,7 +98,7 @@ impl Render {
     /// Traces the scene, or opens it with what is kept of it.
     fn open(&self, scene: Scene, options: Options) -> Result<OpenedScene, Failure> {
         if self.cache {
-            return cached::open(&self.scene, scene, options);
+            return cached::open(&self.scene, scene, options, self.cache_trees);
         }
         let opened = watched("tracing", |progress| Session::open(scene, options, progress));
         let session = opened.map_err(Failure::job)?;

@@ -69,6 +69,12 @@ impl Layout {
         std::array::from_fn(|lane| self.pixel(Place { tile, block, lane }).is_some())
     }
 
+    /// The same as a mask: bit i for lane i.
+    pub fn lanes(self, tile: usize, block: usize) -> u16 {
+        let covered = self.covered(tile, block).into_iter().enumerate();
+        covered.fold(0, |mask, (lane, covered)| mask | u16::from(covered) << lane)
+    }
+
     /// Where the pixel (x, y) lies.
     ///
     /// # Panics

@@ -114,8 +114,6 @@ impl Change {
                 None => self.shadow(true, "a light"),
             }
         }
-        // Keys of the records in kept trees must not run out.
-        self.ray(self.shadows && new.len() > usize::from(u16::MAX) / 2, "a light");
         // What a light that is gone lit is as black as if it were off.
         self.term(old.len() != new.len());
     }

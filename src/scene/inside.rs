@@ -75,10 +75,8 @@ impl Solid {
                 p.cmpge(*min - margin).all() && p.cmple(*max + margin).all()
             }
             Shape::Polygon { points: _ } => false,
-            Shape::Mesh { file: _, mesh } => {
-                let far = mesh.positions.iter().map(|q| q.length()).fold(0.0, f64::max);
-                within(DVec3::ZERO, far)
-            }
+            // A part of it may be turned inside out: seen from outside it is like an inside.
+            Shape::Mesh { file: _, mesh: _ } => true,
             // The knot lies within a torus of radius 1 ½ and its own tube.
             Shape::Knot { turns: _, tube, segments: _ } => within(DVec3::ZERO, 2.0 + tube),
             // Radii 1, 1/3, 1/9 … one upon the other.

@@ -1,7 +1,9 @@
 //! What editing a parameter will cost, known before it is touched.
 
+use super::plan::Plan;
 use super::{Session, Work};
 use crate::color::Rgb;
+use crate::film::layout::Layout;
 use crate::fold::trie::ROOT;
 use crate::scene::change::Change;
 use crate::scene::factor::{Factor, FactorValues, Kind};
@@ -21,6 +23,9 @@ pub enum Cost {
     InstantUpTo(f64, Pixels),
     /// A re-shade for values ≥ this; rays for values below it, for these pixels just below it.
     InstantDownTo(f64, Pixels),
+    /// A re-shade for values ≥ this; for values below it the kept trees of these pixels are read
+    /// again.
+    RereadBelow(f64, Pixels),
     /// Highlights are folded again, no ray is cast.
     Refold,
     /// The kept trees of these pixels are read and folded again, no ray is cast.
@@ -38,6 +43,24 @@ pub struct Pixels {
     pub count: u64,
     /// Of how many.
     pub of: u64,
+    /// Branches and shadow rays that come alive in them: at least so many rays are cast.
+    pub rays: u64,
+    /// Whether the kept trees of some of them were released for memory: there every ray is cast.
+    pub released: bool,
+}
+
+impl Pixels {
+    /// Those of a plan.
+    fn of(plan: &Plan, layout: Layout) -> Pixels {
+        let (count, of) = (plan.pixels(), layout.pixels());
+        Pixels { count, of, rays: plan.rays(), released: plan.released > 0 }
+    }
+
+    /// All of a picture.
+    fn all(layout: Layout) -> Pixels {
+        let of = layout.pixels();
+        Pixels { count: of, of, rays: 0, released: false }
+    }
 }
 
 /// What editing the parameter at `path` will cost in a session; `None` if there is no such
@@ -68,14 +91,13 @@ fn cost_of_refraction(session: &mut Session, altered: &Scene) -> Option<Cost> {
     }
     let mut beyond = (*scene).clone();
     beyond.materials[material].ior = limit.next_down();
-    let of = session.transport.layout.pixels();
+    let layout = session.transport.layout;
     let change = Change::between(&scene, &beyond);
-    let count = match session.work(&beyond, &change) {
-        Work::Regrow(plan) => plan.pixels(),
-        Work::Shade => 0,
-        Work::Trace(_) => of,
-    };
-    Some(Cost::InstantDownTo(limit, Pixels { count, of }))
+    Some(match session.work(&beyond, &change) {
+        Work::Regrow(plan) => Cost::RereadBelow(limit, Pixels::of(&plan, layout)),
+        Work::Shade => Cost::Instant,
+        Work::Trace(_) => Cost::RereadBelow(limit, Pixels::all(layout)),
+    })
 }
 
 /// The same while the scene is still traced and `session` holds a preview of it: `None` also where
@@ -97,11 +119,11 @@ fn knob(scene: &Scene, altered: &Scene) -> Option<Knob> {
 /// The cost of an edit that brings no branch to life.
 fn cost_of(session: &mut Session, altered: &Scene) -> Cost {
     let change = Change::between(session.scene(), altered);
-    let of = session.transport.layout.pixels();
+    let layout = session.transport.layout;
     match session.work(altered, &change) {
         Work::Trace(_) => Cost::TraceAll,
-        Work::Regrow(plan) if plan.casts => Cost::Regrow(Pixels { count: plan.pixels(), of }),
-        Work::Regrow(plan) => Cost::Reread(Pixels { count: plan.pixels(), of }),
+        Work::Regrow(plan) if plan.casts => Cost::Regrow(Pixels::of(&plan, layout)),
+        Work::Regrow(plan) => Cost::Reread(Pixels::of(&plan, layout)),
         Work::Shade if !change.refold.is_empty() => Cost::Refold,
         Work::Shade => Cost::Instant,
     }
@@ -210,17 +232,17 @@ impl Knob {
     fn cost(self, session: &mut Session) -> Cost {
         let [first, last] = self.steps(session.scene());
         let limit = Search::new(self, session.scene(), first, last).limit(session);
-        let limit = limit.min(self.stale_from(session).unwrap_or(last));
+        let limit = limit.min(self.stale_from(session, first).unwrap_or(last));
         if limit == last {
             return Cost::Instant;
         }
         let mut beyond = session.scene().clone();
         self.factors(&mut beyond, session.scene(), limit + 1);
         let change = Change::between(session.scene(), &beyond);
-        let of = session.transport.layout.pixels();
+        let layout = session.transport.layout;
         let pixels = match session.work(&beyond, &change) {
-            Work::Regrow(plan) => Pixels { count: plan.pixels(), of },
-            Work::Shade | Work::Trace(_) => Pixels { count: of, of },
+            Work::Regrow(plan) => Pixels::of(&plan, layout),
+            Work::Shade | Work::Trace(_) => Pixels::all(layout),
         };
         match self {
             Knob::Cutoff => Cost::InstantDownTo(self.value(limit), pixels),
@@ -229,12 +251,15 @@ impl Knob {
     }
 
     /// The last step at which an index of refraction that the trees were not grown with does not
-    /// matter, if it matters beyond.
-    fn stale_from(self, session: &Session) -> Option<u32> {
-        let Knob::Transmit(material) = self else { return None };
-        let material_now = &session.scene().materials[material];
-        let stale = material_now.ior != session.iors[material];
-        (stale && !session.scene().ior_matters(material)).then_some(0)
+    /// matter, if it matters beyond: of this material or of another, which has a denser one before it
+    /// as soon as light passes through this one.
+    fn stale_from(self, session: &Session, first: u32) -> Option<u32> {
+        let Knob::Transmit(_) = self else { return None };
+        let present = session.scene();
+        let mut beyond = present.clone();
+        self.factors(&mut beyond, present, first + 1);
+        let change = Change::between(present, &beyond);
+        (!session.stale(&beyond, &change).is_empty()).then_some(first)
     }
 }
 

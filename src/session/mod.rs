@@ -259,6 +259,13 @@ impl Session {
             let what = change.moves_rays.unwrap_or("the scene");
             return Work::Trace(format!("{what} moves rays"));
         }
+        // New keys and indices beside the old ones must not run out.
+        let lights = self.keys_in_trees.len() + scene.lights.len();
+        if lights.max(self.iors.len() + scene.materials.len()) > usize::from(u16::MAX)
+            && (change.shadows || !change.keeps_materials())
+        {
+            return Work::Trace("there are so many lights or materials".into());
+        }
         self.plan(scene, change).map_or(Work::Shade, Work::Regrow)
     }
 

@@ -3,13 +3,13 @@
 use rayon::prelude::*;
 
 use super::Session;
-use crate::film::layout::{LANES, TILE_BLOCKS};
+use crate::film::layout::{LANES, Layout, TILE_BLOCKS};
 use crate::fold::merge::Blocks;
 use crate::fold::transport::TransportTile;
 use crate::fold::trie::Trie;
 use crate::scene::Scene;
 use crate::scene::change::Change;
-use crate::scene::factor::{FactorValues, Kind};
+use crate::scene::factor::{Factor, FactorValues, Kind};
 
 /// The least work that makes the picture exact where shading alone does not.
 #[derive(Clone, Debug)]
@@ -20,6 +20,8 @@ pub struct Plan {
     pub tiles: Vec<PlanTile>,
     /// Whether rays may have to be cast; otherwise what is kept answers all of them.
     pub casts: bool,
+    /// How many of the tiles have no kept trees: there every ray is cast.
+    pub released: usize,
 }
 
 /// Pixels of a tile.
@@ -29,12 +31,19 @@ pub struct PlanTile {
     pub tile: usize,
     /// Per block bit i for lane i.
     pub lanes: Box<[u16; TILE_BLOCKS]>,
+    /// How many branches and shadow rays begin in them that come alive.
+    pub rays: u64,
 }
 
 impl Plan {
     /// How many pixels there are.
     pub fn pixels(&self) -> u64 {
         self.tiles.iter().map(PlanTile::pixels).sum()
+    }
+
+    /// How many branches and shadow rays come alive: at least so many rays are cast.
+    pub fn rays(&self) -> u64 {
+        self.tiles.iter().map(|tile| tile.rays).sum()
     }
 }
 
@@ -53,12 +62,24 @@ impl PlanTile {
 
 /// What is looked for, by the ids of the picture's terms.
 struct Concern {
+    layout: Layout,
     /// Terms in front of which a coefficient stands.
-    terms: Vec<bool>,
+    terms: Vec<Sought>,
     /// The same, in tiles without highlight lists.
-    unlisted: Vec<bool>,
+    unlisted: Vec<Sought>,
     /// Terms at which branches or shadow rays end.
     frontier: Vec<bool>,
+}
+
+/// How the pixels of a term are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sought {
+    /// Not at all.
+    No,
+    /// By their coefficients.
+    Lanes,
+    /// With all of a block that has the term: a highlight's coefficient may be 0 for this exponent.
+    Block,
 }
 
 impl Session {
@@ -87,7 +108,8 @@ impl Session {
             nodes.extend(stale.into_iter().map(|(before, _)| before));
         }
         let mut concern = Concern {
-            terms: vec![false; if nodes.is_empty() && !change.shadows { 0 } else { count }],
+            layout: self.transport.layout,
+            terms: vec![Sought::No; if nodes.is_empty() && !change.shadows { 0 } else { count }],
             unlisted: Vec::new(),
             frontier: vec![false; count],
         };
@@ -108,20 +130,21 @@ impl Session {
             }
             if let Some(id) = first {
                 casts = true;
-                reason.get_or_insert_with(|| self.comes_alive(id, scene));
+                reason.get_or_insert_with(|| self.comes_alive(id));
             }
         }
         let reason = reason?;
         let tiles = self.transport.tiles.par_iter().enumerate();
         let find = |(tile, transport)| concern.of_tile(tile, transport);
         let tiles: Vec<PlanTile> = self.pool.install(|| tiles.filter_map(find).collect());
-        casts |= tiles.iter().any(|plan| self.forest.tiles[plan.tile].is_none());
-        Some(Plan { reason, tiles, casts })
+        let is_released = |plan: &&PlanTile| self.forest.tiles[plan.tile].is_none();
+        let released = tiles.iter().filter(is_released).count();
+        Some(Plan { reason, tiles, casts: casts || released > 0, released })
     }
 
     /// Old materials whose index of refraction shows in the new scene, and with which the trees were
     /// not grown, because it did not matter; and whether rays go on through them.
-    fn stale(&self, scene: &Scene, change: &Change) -> Vec<(u16, bool)> {
+    pub(super) fn stale(&self, scene: &Scene, change: &Change) -> Vec<(u16, bool)> {
         let pairs = scene.materials.iter().zip(&change.materials).enumerate();
         let stale = pairs.filter_map(|(i, (new, &before))| {
             let before = before?;
@@ -171,19 +194,21 @@ impl Session {
     }
 
     /// Marks the terms that have coefficients of some of the new scene's materials' surfaces.
-    fn terms_of(&self, materials: &[u16], change: &Change) -> Vec<bool> {
+    fn terms_of(&self, materials: &[u16], change: &Change) -> Vec<Sought> {
         let old: Vec<usize> = materials
             .iter()
             .filter_map(|&m| change.materials[m as usize].map(usize::from))
             .collect();
-        let is_of = |kind, index| kind == Kind::Ambient && old.contains(&index);
-        let nodes = self.transport.trie.nodes().iter();
-        nodes.map(|node| is_of(node.factor.kind(), node.factor.index())).collect()
+        let sought = |factor: Factor| match factor.kind() == Kind::Ambient {
+            true if old.contains(&factor.index()) => Sought::Lanes,
+            _ => Sought::No,
+        };
+        self.transport.trie.nodes().iter().map(|node| sought(node.factor)).collect()
     }
 
-    fn comes_alive(&self, id: u32, scene: &Scene) -> String {
+    fn comes_alive(&self, id: u32) -> String {
         let factors = self.transport.trie.factors(id);
-        let names: Vec<_> = factors.iter().map(|f| f.describe(scene)).collect();
+        let names: Vec<_> = factors.iter().map(|f| f.describe(&self.scene)).collect();
         format!("the branch {} comes alive", names.join(" · "))
     }
 }
@@ -196,7 +221,12 @@ fn mark_nodes(trie: &Trie, materials: &[u16], all: bool, concern: &mut Concern) 
         let named = || materials.contains(&(index as u16));
         let surface = kind == Kind::Ambient && (all || named());
         let shadow = kind == Kind::Shadow && named();
-        concern.terms[id] = surface || shadow || concern.terms[node.parent as usize];
+        let above = concern.terms[node.parent as usize];
+        concern.terms[id] = match surface || shadow || above != Sought::No {
+            true if kind == Kind::Through => Sought::Block,
+            true => Sought::Lanes,
+            false => Sought::No,
+        };
         concern.frontier[id] |= shadow;
     }
 }
@@ -204,11 +234,13 @@ fn mark_nodes(trie: &Trie, materials: &[u16], all: bool, concern: &mut Concern) 
 impl Concern {
     fn of_tile(&self, tile: usize, transport: &TransportTile) -> Option<PlanTile> {
         let mut lanes = Box::new([0u16; TILE_BLOCKS]);
+        let mut rays = 0;
+        let place = (self.layout, tile);
         if !self.terms.is_empty() {
-            find_terms(transport, &self.terms, &mut lanes);
+            find_terms(transport, &self.terms, place, &mut lanes);
         }
         if !self.unlisted.is_empty() && transport.highlights.is_none() {
-            find_terms(transport, &self.unlisted, &mut lanes);
+            find_terms(transport, &self.unlisted, place, &mut lanes);
         }
         let frontier = &transport.frontier;
         let known = frontier.terms.iter().any(|&id| self.frontier[id as usize]);
@@ -217,29 +249,37 @@ impl Concern {
                 for mark in frontier.block(block) {
                     if self.frontier[frontier.terms[mark.entry as usize] as usize] {
                         *lanes |= mark.mask;
+                        rays += u64::from(mark.rays);
                     }
                 }
             }
         }
-        lanes.iter().any(|&lanes| lanes != 0).then_some(PlanTile { tile, lanes })
+        lanes.iter().any(|&lanes| lanes != 0).then_some(PlanTile { tile, lanes, rays })
     }
 }
 
 /// Adds the lanes in which coefficients of the marked terms stand.
-fn find_terms(transport: &TransportTile, marked: &[bool], lanes: &mut [u16; TILE_BLOCKS]) {
-    let local: Vec<bool> = transport.terms.iter().map(|&id| marked[id as usize]).collect();
-    if !local.contains(&true) {
+fn find_terms(
+    transport: &TransportTile,
+    sought: &[Sought],
+    (layout, tile): (Layout, usize),
+    lanes: &mut [u16; TILE_BLOCKS],
+) {
+    let local: Vec<Sought> = transport.terms.iter().map(|&id| sought[id as usize]).collect();
+    if local.iter().all(|&sought| sought == Sought::No) {
         return;
     }
     for (block, lanes) in lanes.iter_mut().enumerate() {
         let rows = transport.block(block);
         for (&entry, plane) in rows.entries.iter().zip(rows.planes) {
-            if local[entry as usize] && *lanes != u16::MAX {
-                let set = |mask, i| mask | u16::from(plane.0[i] != 0.0) << i;
-                *lanes |= (0..LANES).fold(0, set);
+            let set = |mask, i| mask | u16::from(plane.0[i] != 0.0) << i;
+            match local[entry as usize] {
+                Sought::Lanes if *lanes != u16::MAX => *lanes |= (0..LANES).fold(0, set),
+                Sought::Block => *lanes |= layout.lanes(tile, block),
+                Sought::No | Sought::Lanes => {}
             }
         }
-        for single in rows.singles.iter().filter(|single| local[single.entry()]) {
+        for single in rows.singles.iter().filter(|s| local[s.entry()] != Sought::No) {
             *lanes |= 1 << single.lane();
         }
     }

@@ -44,8 +44,10 @@ pub struct Regrow {
     /// Per material of the new scene, of the trees when all is done.
     iors_after: Vec<f64>,
     budget: usize,
-    /// Bytes kept, those of the patches included.
+    /// Bytes kept, those of the patches' trees included.
     kept: AtomicUsize,
+    /// Bytes of the trees in whose place those of the patches come.
+    replaced: AtomicUsize,
 }
 
 /// Blocks of a tile grown and folded again.
@@ -81,6 +83,7 @@ impl Session {
             iors_before: self.geometry.of_solids(&self.iors),
             iors_after: self.iors_after(&scene, change),
             kept: AtomicUsize::new(self.kept_bytes() as usize),
+            replaced: AtomicUsize::new(0),
             budget: usize::try_from(self.options.memory).unwrap_or(usize::MAX),
             scene,
             plan,
@@ -90,7 +93,9 @@ impl Session {
     /// Keys of the new scene's lights: a light that is new or elsewhere has a new one.
     fn keys_after(&mut self, change: &Change) -> Vec<u16> {
         let old = &self.keys;
-        let mut free = (0..=u16::MAX).filter(|key| !self.keys_in_trees.contains(key));
+        let mut taken = vec![false; usize::from(u16::MAX) + 1];
+        self.keys_in_trees.iter().for_each(|&key| taken[usize::from(key)] = true);
+        let mut free = (0..=u16::MAX).filter(|&key| !taken[usize::from(key)]);
         let key = |before: &Option<u16>| match before {
             Some(before) => old[*before as usize],
             None => free.next().expect("fewer lights than keys"),
@@ -214,8 +219,9 @@ impl Patch {
         self.blocks
     }
 
-    /// Draws its blocks as `scene` shows them, a scene that needs no other rays than the plan's.
-    pub(super) fn draw(&self, regrow: &Regrow, scene: &Scene, frame: &mut Frame) {
+    /// Draws its blocks as the plan's scene shows them.
+    pub(super) fn draw(&self, regrow: &Regrow, frame: &mut Frame) {
+        let scene = &regrow.scene;
         let factors = FactorValues::new(scene).with_lights_at(&regrow.names.lights);
         let mut terms = TermValues::default();
         terms.evaluate(&TermProgram::new(&self.trie), &factors);
@@ -298,8 +304,11 @@ impl Regrow {
         }
         let peaks: Vec<_> = self.scene.materials.iter().map(|m| Some(Peak::of(m))).collect();
         let folded = folder.finish_tile(1.0 / samples as f32, &peaks);
-        let bytes = self.kept.fetch_add(trees.bytes(), Relaxed);
-        let fits = trees.is_whole() && bytes + trees.bytes() <= self.budget;
+        // They take the place of the old ones, which go when all is done.
+        let replaced = old.map_or(0, KeptTrees::bytes);
+        let bytes = self.kept.fetch_add(trees.bytes(), Relaxed) + trees.bytes();
+        let bytes = bytes.saturating_sub(self.replaced.fetch_add(replaced, Relaxed) + replaced);
+        let fits = trees.is_whole() && bytes <= self.budget;
         Ok(Patch {
             tile: plan.tile,
             blocks: plan.blocks(),

@@ -19,7 +19,9 @@ pub(super) fn text(cost: Option<Cost>) -> String {
         None => "…".into(),
         Some(Cost::Instant) => "instant".into(),
         Some(Cost::InstantUpTo(x, _)) => format!("instant ≤ {}", rounded(x, f64::floor)),
-        Some(Cost::InstantDownTo(x, _)) => format!("instant ≥ {}", rounded(x, f64::ceil)),
+        Some(Cost::InstantDownTo(x, _) | Cost::RereadBelow(x, _)) => {
+            format!("instant ≥ {}", rounded(x, f64::ceil))
+        }
         Some(Cost::Refold) => "refold".into(),
         Some(Cost::Reread(pixels)) => format!("rereads {}", share(pixels)),
         Some(Cost::Regrow(pixels)) => format!("traces {}", share(pixels)),
@@ -34,31 +36,52 @@ pub(super) fn explanation(cost: Option<Cost>) -> String {
         Some(Cost::Instant) => "Instant: no ray is cast, whatever the value".into(),
         Some(Cost::InstantUpTo(x, pixels)) => format!(
             "Instant up to {}; above that branches of the ray trees come alive that were not \
-             traced: traces {} of the pixels, and with higher values perhaps more",
+             traced: traces {} of the pixels, and with higher values perhaps more{}",
             rounded(x, f64::floor),
-            share(pixels)
+            share(pixels),
+            rays(pixels)
         ),
         Some(Cost::InstantDownTo(x, pixels)) => format!(
             "Instant down to {}; below that branches of the ray trees come alive that were not \
-             traced: traces {} of the pixels, and with lower values perhaps more",
+             traced: traces {} of the pixels, and with lower values perhaps more{}",
             rounded(x, f64::ceil),
-            share(pixels)
+            share(pixels),
+            rays(pixels)
+        ),
+        Some(Cost::RereadBelow(x, pixels)) => format!(
+            "Instant down to {}; below that total reflection may show: the kept ray trees of {} of \
+             the pixels are read again{}",
+            rounded(x, f64::ceil),
+            share(pixels),
+            rays(pixels)
         ),
         Some(Cost::Reread(pixels)) => format!(
             "The kept ray trees of {} of the pixels are read again; no ray is cast",
             share(pixels)
         ),
         Some(Cost::Regrow(pixels)) => format!(
-            "Traces new rays for {} of the pixels; the kept ray trees answer all others",
-            share(pixels)
+            "Traces new rays for {} of the pixels; the kept ray trees answer all others{}",
+            share(pixels),
+            rays(pixels)
         ),
         Some(Cost::Refold) => "Highlights are summed again from kept angles; no ray is cast".into(),
         Some(Cost::TraceAll) => "Moves rays: the picture is traced anew, coarse first".into(),
     }
 }
 
+/// How many rays there will be, as far as it is known.
+fn rays(pixels: Pixels) -> String {
+    let least = match pixels.rays {
+        0 => String::new(),
+        n if n < 10_000 => format!("; at least {n} rays"),
+        n => format!("; at least {:.2} million rays", n as f64 / 1e6),
+    };
+    let released = "; some trees were released for memory, and are traced whole";
+    least + if pixels.released { released } else { "" }
+}
+
 /// Per cent of the picture, never 0 for some and never 100 for not all.
-fn share(Pixels { count, of }: Pixels) -> String {
+fn share(Pixels { count, of, .. }: Pixels) -> String {
     let percent = count as f64 * 100.0 / of as f64;
     match () {
         () if count == 0 => "0 %".into(),
@@ -88,6 +111,7 @@ fn price(cost: Option<Cost>) -> Price {
         None => Price::Unknown,
         Some(Cost::Instant) => Price::Free,
         Some(Cost::InstantUpTo(..) | Cost::InstantDownTo(..)) => Price::Mixed,
+        Some(Cost::RereadBelow(..)) => Price::Mixed,
         Some(Cost::Refold | Cost::Reread(_)) => Price::Mixed,
         Some(Cost::Regrow(_) | Cost::TraceAll) => Price::Dear,
     }
@@ -127,7 +151,7 @@ pub(super) fn badge_ui(ui: &mut Ui, name: &str, cost: Option<Cost>, width: f32) 
 mod tests {
     use super::*;
 
-    const SOME: Pixels = Pixels { count: 3, of: 16 };
+    const SOME: Pixels = Pixels { count: 3, of: 16, rays: 0, released: false };
 
     #[test]
     fn a_threshold_is_rounded_to_the_safe_side() {
@@ -140,7 +164,7 @@ mod tests {
 
     #[test]
     fn a_share_is_neither_none_nor_all_unless_it_is() {
-        let of = |count| share(Pixels { count, of: 1000 });
+        let of = |count| share(Pixels { count, of: 1000, ..SOME });
         assert_eq!(
             [0, 1, 9, 10, 126, 999, 1000].map(of),
             ["0 %", "< 1 %", "< 1 %", "1 %", "13 %", "99 %", "100 %"]

@@ -173,7 +173,8 @@ fn slider_ui(ui: &mut Ui, row: &Row<'_>, name: &str, x: &mut f64, range: Range) 
 
 /// A tick on the slider where an edit stops being instant.
 fn threshold_ui(ui: &Ui, slider: &Response, cost: Option<Cost>, low: f64, high: f64) {
-    let (Some(Cost::InstantUpTo(x, _)) | Some(Cost::InstantDownTo(x, _))) = cost else { return };
+    use Cost::{InstantDownTo, InstantUpTo, RereadBelow};
+    let Some(InstantUpTo(x, _) | InstantDownTo(x, _) | RereadBelow(x, _)) = cost else { return };
     if !(low..=high).contains(&x) || high <= low {
         return;
     }

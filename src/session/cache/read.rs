@@ -180,7 +180,7 @@ impl<'a> Reader<'a> {
     ) -> Result<TransportTile, Fault> {
         let mut transport = self.file.part(self.numbers.matrix(tile), scratch, |source| {
             let part = parts::take_matrix(source)?;
-            sound::matrix(&part, trie.nodes().len()).map(|()| part)
+            sound::matrix(&part, trie.nodes()).map(|()| part)
         })?;
         let number = self.numbers.lists(tile);
         if tile < lists && self.file.header.parts[number].is_there() {

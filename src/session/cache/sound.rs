@@ -86,11 +86,11 @@ pub(super) fn state(state: &State, scene: &Scene) -> Result<(), Unsound> {
 
 /// Whether a tile's part of a matrix of so many terms is sound. Its highlight lists are not looked
 /// at.
-pub(super) fn matrix(tile: &TransportTile, trie_nodes: usize) -> Result<(), Unsound> {
+pub(super) fn matrix(tile: &TransportTile, nodes: &[TrieNode]) -> Result<(), Unsound> {
     let TransportTile { terms, starts, entries, planes, singles, highlights: _, frontier } = tile;
-    ends(frontier, trie_nodes)?;
+    ends(frontier, nodes)?;
     ensure(terms.is_sorted_by(|a, b| a < b), "the dictionary is out of order")?;
-    let last = terms.last().is_none_or(|last| (*last as usize) < trie_nodes);
+    let last = terms.last().is_none_or(|last| (*last as usize) < nodes.len());
     ensure(last, "the dictionary has an unknown term")?;
     ensure(entries.len() == planes.len(), "not one plane per entry")?;
     positions(starts, planes.len(), singles.len())?;
@@ -112,11 +112,13 @@ pub(super) fn matrix(tile: &TransportTile, trie_nodes: usize) -> Result<(), Unso
 }
 
 /// Whether the frontier of a tile is one of so many terms.
-fn ends(frontier: &Frontier, trie_nodes: usize) -> Result<(), Unsound> {
+fn ends(frontier: &Frontier, nodes: &[TrieNode]) -> Result<(), Unsound> {
     let Frontier { terms, starts, marks } = frontier;
     ensure(terms.is_sorted_by(|a, b| a < b), "the frontier is out of order")?;
-    let last = terms.last().is_none_or(|last| (*last as usize) < trie_nodes);
+    let last = terms.last().is_none_or(|last| (*last as usize) < nodes.len());
     ensure(last, "the frontier has an unknown term")?;
+    let ended = |id: &u32| nodes[*id as usize].marks.has(nodes[*id as usize].end_mark());
+    ensure(terms.iter().all(ended), "the frontier has a term at which nothing ends")?;
     let whole = starts.len() == TILE_BLOCKS + 1 && starts.is_sorted() && starts[0] == 0;
     ensure(whole && starts[TILE_BLOCKS] as usize == marks.len(), "the frontier leaves out blocks")?;
     let sound = |mark: &FrontierMark| {
@@ -285,7 +287,7 @@ pub(super) mod tests {
     #[test]
     fn faults_of_a_matrix_are_found() {
         let session = session([37, 9], 2);
-        let terms = session.transport().trie.nodes().len();
+        let nodes = session.transport().trie.nodes();
         let cases: [Case<TransportTile>; 14] = [
             ("the dictionary is out of order", |t| t.terms.swap(0, 1)),
             ("the dictionary has an unknown term", |t| t.terms.push(1 << 30)),
@@ -306,7 +308,7 @@ pub(super) mod tests {
             ("a coefficient is not finite", |t| t.planes[0].0[7] = f32::NAN),
             ("a coefficient is not finite", |t| t.singles[0].coefficient = f32::INFINITY),
         ];
-        hold(&session.transport().tiles[0], &cases, |tile| matrix(tile, terms));
+        hold(&session.transport().tiles[0], &cases, |tile| matrix(tile, nodes));
     }
 
     #[test]
@@ -362,7 +364,7 @@ pub(super) mod tests {
     #[test]
     fn faults_of_a_frontier_are_found() {
         let session = session([37, 9], 2);
-        let terms = session.transport().trie.nodes().len();
+        let nodes = session.transport().trie.nodes();
         let several = |tile: &&TransportTile| tile.frontier.terms.len() > 1;
         let tile = session.transport().tiles.iter().find(several).unwrap();
         fn two(frontier: &Frontier) -> usize {
@@ -382,7 +384,7 @@ pub(super) mod tests {
                 f.marks.swap(at, at + 1);
             }),
         ];
-        hold(&tile.frontier, &cases, |frontier| ends(frontier, terms));
+        hold(&tile.frontier, &cases, |frontier| ends(frontier, nodes));
     }
 
     #[test]

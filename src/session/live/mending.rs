@@ -75,21 +75,22 @@ impl Mending {
         self.scene = scene;
         let layout = whole.transport().layout;
         self.pending = vec![None; layout.tiles()];
-        for PlanTile { tile, lanes } in &plan.tiles {
+        for PlanTile { tile, lanes, rays: _ } in &plan.tiles {
             self.pending[*tile] = Some(lanes.clone());
         }
         let change = Change::between(whole.scene(), &self.scene);
+        let is_planned = self.is_planned();
         let frame = Arc::make_mut(&mut self.frame);
         whole.draw_ahead(&self.scene, &change, frame);
         if !change.refold.is_empty() {
-            self.pending.fill(Some(Box::new([u16::MAX; TILE_BLOCKS])));
+            // Highlights of another exponent are not drawn ahead.
+            for (tile, lanes) in self.pending.iter_mut().enumerate() {
+                *lanes = Some(Box::new(std::array::from_fn(|block| layout.lanes(tile, block))));
+            }
         }
-        // Highlights of another exponent are not drawn ahead, and what a patch was grown for may not
-        // be all that a later wish needs.
-        let final_patches = *self.scene == *self.regrow.scene;
-        for patch in &self.patches {
-            patch.draw(&self.regrow, &self.scene, frame);
-            if final_patches {
+        if is_planned {
+            for patch in &self.patches {
+                patch.draw(&self.regrow, frame);
                 forget(&mut self.pending, patch);
             }
         }
@@ -98,11 +99,18 @@ impl Mending {
 
     /// Takes what was grown.
     pub(super) fn take(&mut self, patch: Patch) {
-        patch.draw(&self.regrow, &self.scene, Arc::make_mut(&mut self.frame));
-        if *self.scene == *self.regrow.scene {
+        if self.is_planned() {
+            patch.draw(&self.regrow, Arc::make_mut(&mut self.frame));
             forget(&mut self.pending, &patch);
         }
         self.patches.push(patch);
+    }
+
+    /// Whether the scene shown is the plan's own. A patch holds whole blocks as the plan's scene has
+    /// them: a later wish may want branches of theirs that it lacks, or name lights and materials
+    /// otherwise, so that it is seen only when all are in place.
+    fn is_planned(&self) -> bool {
+        *self.scene == *self.regrow.scene
     }
 
     /// Draws the coarse picture, if there is one, and the marks into what is not final.

@@ -387,7 +387,11 @@ impl Shader {
             _ => None,
         };
         let trees = match mending {
-            Some(_) => None,
+            // What a dropped trace left is no picture of this scene.
+            Some(_) => {
+                self.preview = None;
+                None
+            }
             None => self.whole.as_mut().map(Session::take_trees),
         };
         let reuse = Arc::new(Mutex::new(trees));
@@ -494,8 +498,8 @@ impl Shader {
     fn put_on_hold(&mut self, failed: bool) {
         let Some(scene) = self.wanted.clone() else { return };
         self.hold = Some(Hold { scene, failed });
-        let mended = self.job.as_ref().is_some_and(|job| job.mending.is_some());
-        if self.whole.is_some() && (self.preview.take().is_some() || mended) {
+        if self.whole.is_some() {
+            self.preview = None;
             self.show();
         }
         for export in std::mem::take(&mut self.waiting) {

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::film::layout::{LANES, Layout, Place, TILE_BLOCKS};
+use crate::scene::Material;
 use crate::session::Work;
 use crate::session::plan::Plan;
 
@@ -154,4 +155,41 @@ fn an_export_waits_for_the_last_pending_pixel() {
     window.want(&moved);
     export(&mut window, path.clone(), scene.picture.size);
     assert_eq!(decoded(&path).0, opaque(fresh(&moved).frame()));
+}
+
+#[test]
+fn things_that_come_and_go_while_pixels_are_grown() {
+    let mut scene = slow();
+    scene.materials.insert(1, Material::new("spare"));
+    scene.solids.iter_mut().filter(|s| s.material >= 1).for_each(|s| s.material += 1);
+    let mut window = Window::showing(&scene);
+    let mut edited = with(&scene, "lights.key.point", "[-2, -4, 9]");
+    window.want(&edited);
+    let begun = |w: &Window| w.newest.as_ref().is_some_and(|s| s.stage == Stage::Mending);
+    window.wait("pixels are grown", begun);
+    edited.materials.remove(1);
+    edited.solids.iter_mut().filter(|s| s.material > 1).for_each(|s| s.material -= 1);
+    window.want(&edited);
+    window.wait("a look", |_| true);
+    edited.lights.remove(0);
+    window.want(&edited);
+    window.wait("all of it", |w| w.status.in_step);
+    window.shows_whole(&edited);
+    assert!(window.events.is_empty(), "{:?}", window.events);
+}
+
+#[test]
+fn a_regrow_that_does_not_fit_brings_the_old_picture_back() {
+    let scene = scene("whitted", [320, 180], 4);
+    let matrix = fresh(&scene).transport().bytes() as u64;
+    let mut window = Window::new(Options { memory: matrix + matrix / 20, ..OPTIONS });
+    window.want(&scene);
+    window.wait("the first picture", |w| w.status.in_step);
+    let mut edited = with(&scene, "materials.tiles.reflect", "0.9");
+    edited.trace.cutoff = 1e-6;
+    window.want(&edited);
+    window.wait("a failure", |w| w.status.held && !w.events.is_empty());
+    assert!(matches!(&window.events[..], [Event::Failed(text)] if text.contains("GiB")));
+    window.wait("the old picture", |w| w.shown().stage == Stage::Whole);
+    window.shows_whole(&scene);
 }

@@ -9,7 +9,7 @@ use rayforest::session::{Class, Options, Session};
 
 use super::{SHIPPED, open, set, shipped};
 
-const NONE: Pixels = Pixels { count: 0, of: 1 };
+const NONE: Pixels = Pixels { count: 0, of: 1, rays: 0, released: false };
 
 /// The numbers of a TOML value.
 fn numbers(value: &str) -> Vec<f64> {
@@ -76,10 +76,12 @@ fn lie(session: &mut Session, parameter: &Parameter, cost: Cost) -> Option<Strin
     };
     let instant = |class: Class| class <= Class::Reshade;
     // Below the limit of an index of refraction nothing is cast where nothing is let through.
-    let reread = parameter.path.ends_with(".ior");
+    let reread = matches!(cost, Cost::RereadBelow(..));
     let traced = |class: Class| class == Class::Regrow || (reread && class == Class::Refold);
     match cost {
-        Cost::InstantUpTo(limit, _) | Cost::InstantDownTo(limit, _) => {
+        Cost::InstantUpTo(limit, _)
+        | Cost::InstantDownTo(limit, _)
+        | Cost::RereadBelow(limit, _) => {
             let up = matches!(cost, Cost::InstantUpTo(..));
             let (within, beyond) = around(parameter, limit, up);
             let half = match (up, reread) {
@@ -115,8 +117,8 @@ fn lie(session: &mut Session, parameter: &Parameter, cost: Cost) -> Option<Strin
 }
 
 /// Holds the costs of all parameters; how many of each kind there are.
-fn hold(session: &mut Session, what: &str) -> [usize; 7] {
-    let mut kinds = [0; 7];
+fn hold(session: &mut Session, what: &str) -> [usize; 8] {
+    let mut kinds = [0; 8];
     for parameter in parameters(&session.scene().clone()) {
         let path = &parameter.path;
         let cost = cost(session, path).unwrap_or_else(|| panic!("{what}: {path} has no cost"));
@@ -128,6 +130,7 @@ fn hold(session: &mut Session, what: &str) -> [usize; 7] {
             Cost::InstantUpTo(..) => 1,
             Cost::InstantDownTo(..) => 2,
             Cost::Refold => 3,
+            Cost::RereadBelow(..) => 7,
             Cost::Reread(_) => 4,
             Cost::Regrow(_) => 5,
             Cost::TraceAll => 6,
@@ -138,7 +141,7 @@ fn hold(session: &mut Session, what: &str) -> [usize; 7] {
 
 #[test]
 fn every_badge_of_every_scene_is_the_class_of_the_edit() {
-    let mut all = [0; 7];
+    let mut all = [0; 8];
     for name in SHIPPED {
         let mut session = open(&shipped(name, [48, 32], 2), 2);
         for (sum, kind) in all.iter_mut().zip(hold(&mut session, name)) {

@@ -323,3 +323,38 @@ fn several_parameters_at_once_cost_what_the_dearest_costs() {
     set(&mut edited, "camera.fov_degrees", "41");
     edit_is(&mut session, edited, Class::Retrace, "two with the camera");
 }
+
+/// A light behind Hall's glass, seen through another glass: its highlight is 0 for a high exponent,
+/// and still names what the light came through.
+#[test]
+fn a_highlight_from_behind_that_is_flushed_is_not_forgotten() {
+    let mut scene = all_kinds();
+    for (path, value) in [
+        ("materials.glass.model", "hall"),
+        ("materials.glass.shininess", "1e6"),
+        ("materials.brass.transmit", "0.5"),
+        ("materials.lamp.transmit", "0.25"),
+        ("lights.key.point", "[3, 6, 4]"),
+    ] {
+        set(&mut scene, path, value);
+    }
+    let mut session = open(&scene, 2);
+    set(&mut scene, "solids.ring.material", "lamp");
+    edit_is(&mut session, scene.clone(), Class::Regrow, "another glass before the light");
+    set(&mut scene, "materials.glass.shininess", "1");
+    edit_is(&mut session, scene.clone(), Class::Refold, "a highlight that was flushed");
+    set(&mut scene, "materials.lamp.filter", "[1, 0.2, 0.1]");
+    edit_is(&mut session, scene, Class::Reshade, "the colour that it passes through");
+}
+
+/// A file saved after a material was deleted and a branch came alive is opened by one edit.
+#[test]
+fn a_material_that_goes_as_a_branch_comes_alive() {
+    let mut scene = all_kinds();
+    scene.materials.insert(0, Material::new("spare"));
+    scene.solids.iter_mut().for_each(|solid| solid.material += 1);
+    let mut session = open(&scene, 2);
+    let mut edited = all_kinds();
+    set(&mut edited, "materials.brass.reflect", "0.9");
+    edit_is(&mut session, edited, Class::Regrow, "both at once");
+}

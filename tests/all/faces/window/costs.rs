@@ -50,7 +50,7 @@ fn words(cost: Cost) -> (String, Option<f64>) {
     match cost {
         Cost::Instant => ("instant".into(), None),
         Cost::InstantUpTo(x, _) => ("instant ≤ ".into(), Some(x)),
-        Cost::InstantDownTo(x, _) => ("instant ≥ ".into(), Some(x)),
+        Cost::InstantDownTo(x, _) | Cost::RereadBelow(x, _) => ("instant ≥ ".into(), Some(x)),
         Cost::Refold => ("refold".into(), None),
         Cost::Reread(pixels) => (format!("rereads {}", percent(pixels)), None),
         Cost::Regrow(pixels) => (format!("traces {}", percent(pixels)), None),
