@@ -2,6 +2,7 @@
 
 pub mod cache;
 mod canvas;
+mod class;
 pub mod cost;
 pub mod inspect;
 pub mod live;
@@ -9,7 +10,6 @@ pub mod plan;
 pub mod regrow;
 pub mod trace;
 
-use std::fmt;
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
@@ -34,6 +34,7 @@ use crate::scene::{Material, Scene};
 use crate::shade::cpu::{self, Tiles};
 use crate::shade::terms::{TermProgram, TermValues};
 use canvas::Canvas;
+pub use class::{Class, EditReport, Work};
 use plan::Plan;
 use regrow::{Patch, Regrow};
 use trace::{Keep, Kept, TraceError, TraceReport, trace};
@@ -60,70 +61,6 @@ impl Default for Options {
         });
         Options { threads, memory: (machine / 2).max(1 << 28) }
     }
-}
-
-/// What an edit cost, from cheapest to dearest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Class {
-    /// Nothing visible changed.
-    None,
-    /// Terms and product.
-    Reshade,
-    /// Some materials' coefficients from kept angles, then terms and product.
-    Refold,
-    /// Some pixels' trees, then all of the above.
-    Regrow,
-    /// Everything.
-    Retrace,
-}
-
-impl fmt::Display for Class {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Class::None => "none",
-            Class::Reshade => "reshade",
-            Class::Refold => "refold",
-            Class::Regrow => "regrow",
-            Class::Retrace => "retrace",
-        })
-    }
-}
-
-/// What is to be done for an edit.
-#[derive(Clone, Debug)]
-pub enum Work {
-    /// Terms and product, highlights before them.
-    Shade,
-    /// Some pixels' trees.
-    Regrow(Plan),
-    /// Everything, for this reason.
-    Trace(String),
-}
-
-impl Work {
-    /// What asks for more than shading.
-    pub fn reason(&self) -> &str {
-        match self {
-            Work::Shade => "nothing",
-            Work::Regrow(plan) => &plan.reason,
-            Work::Trace(reason) => reason,
-        }
-    }
-}
-
-/// What was done for an edit.
-#[derive(Clone, Debug, PartialEq)]
-pub struct EditReport {
-    /// Its class.
-    pub class: Class,
-    /// For a trace: what asked for it.
-    pub reason: Option<String>,
-    /// Rays cast.
-    pub rays: RayCounts,
-    /// Pixels whose trees were grown.
-    pub pixels: u64,
-    /// From the edit to the finished 8-bit picture.
-    pub milliseconds: f64,
 }
 
 /// A scene, its kept trees, and its picture, always in step: after every successful call the frame
