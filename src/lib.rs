@@ -24,8 +24,9 @@
 //! * **One rule of liveness**, [`follow`](scene::factor::FactorValues::follow): growing stops by it,
 //!   and shading gives the value 0 by it to a stored branch that would not grow today. Where growth
 //!   stopped, the trees keep a *frontier* record, and the terms a frontier mark; an edit that makes a
-//!   frontier live is the only edit of a colour or coefficient that costs rays. Fresnel's weights are
-//!   geometry: a branch that they leave too faint is no parameter's to wake.
+//!   frontier live is the only edit of a colour or coefficient that costs rays, but for trees that were
+//!   released and an index of refraction that begins to matter. Fresnel's weights are geometry: a
+//!   branch that they leave too faint is no parameter's to wake.
 //! * **Kept trees answer rays.** A kept tree holds what rays met, a primitive and a distance per node,
 //!   a solid per shadow crossing, and nothing that depends on parameters. Growing reads it: a ray that
 //!   it knows is not cast, and everything else, normals, media, cosines, is computed again by the one
@@ -47,6 +48,10 @@
 //!   newest wish wins, a lock is held only to move pointers. What is on the screen is a session,
 //!   coarse or whole, so that it can be edited while the next one is traced; or the whole one while
 //!   some of its pixels are grown again, all others being exact.
+//! * **What is kept on disk** is a session's parts and the scene that they were made from; opening it is
+//!   one edit, from that scene to the opened one. Nothing in the file is trusted: lengths, checksums
+//!   and every index are checked first. The thread that shades writes it, in turns; the one that
+//!   traces opens it.
 //! * **Widgets write into a clone of the scene**; what differs is one step of the document's history
 //!   and one wish to the session. The inspector visits the same list of fields as the reader and the
 //!   writer of scene files: a parameter without a control cannot be written.

@@ -294,9 +294,28 @@ fn matched<T>(old: &[T], new: &[T], name: impl Fn(&T) -> &str) -> Vec<Option<u16
 impl Material {
     /// Whether the rays of the seen path and shadow rays go on from it as from `other`.
     fn leads_rays_like(&self, other: &Material) -> bool {
-        let path = |m: &Material| (m.reflect, m.transmit, m.filter);
-        let weighs = |m: &Material| (m.weighs_branches(), m.model == Model::Hall);
-        let alike = path(self) == path(other) && weighs(self) == weighs(other);
-        alike && self.ior == other.ior
+        let Material {
+            name: _,
+            paint: _,
+            kloc: _,
+            ambient: _,
+            diffuse: _,
+            model,
+            specular: _,
+            shininess: _,
+            roughness: _,
+            metallic: _,
+            emission: _,
+            reflect,
+            transmit,
+            filter,
+            ior,
+            fresnel: _,
+        } = self;
+        let path = (reflect, transmit, filter, ior);
+        let hall = |model| model == Model::Hall;
+        path == (&other.reflect, &other.transmit, &other.filter, &other.ior)
+            && self.weighs_branches() == other.weighs_branches()
+            && hall(*model) == hall(other.model)
     }
 }

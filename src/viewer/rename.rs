@@ -11,6 +11,8 @@ use crate::scene::Scene;
 /// A name being changed.
 pub(super) struct Renaming {
     thing: Thing,
+    /// Its name when the field was opened.
+    was: String,
     text: String,
     /// Whether the field had the keyboard already.
     focused: bool,
@@ -28,7 +30,8 @@ pub(super) enum Left {
 impl Renaming {
     /// The name of a thing that is in the scene.
     pub(super) fn new(scene: &Scene, thing: Thing) -> Renaming {
-        Renaming { thing, text: thing.name(scene).to_owned(), focused: false }
+        let was = thing.name(scene).to_owned();
+        Renaming { thing, text: was.clone(), was, focused: false }
     }
 
     /// Whether it is the name of this thing.
@@ -36,12 +39,13 @@ impl Renaming {
         self.thing == thing
     }
 
-    /// Whether the thing is, or may be, among the lights or materials of a scene.
+    /// Whether the thing still stands in its place in a scene: an undo may have taken it away.
     pub(super) fn is_in(&self, scene: &Scene) -> bool {
-        match self.thing {
+        let there = match self.thing {
             Thing::Light(i) => i < scene.lights.len(),
             Thing::Material(i) => i < scene.materials.len(),
-        }
+        };
+        there && self.thing.name(scene) == self.was
     }
 
     /// Shows the field; says when it is left.

@@ -1,6 +1,7 @@
 //! Random histories of edits that grow trees again: every state is the picture of a fresh trace.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use std::sync::Arc;
 
 use rayforest::film::layout::{LANES, Place, TILE_BLOCKS};
@@ -8,7 +9,8 @@ use rayforest::forest::kept::{KeptStart, KeptTrees};
 use rayforest::forest::tree::{Branch, Reader};
 use rayforest::progress::Progress;
 use rayforest::scene::change::Change;
-use rayforest::scene::{Light, LightPlace, Material, Paint, Scene};
+use rayforest::scene::{Light, LightPlace, Material, Paint, Scene, read, write};
+use rayforest::session::cache;
 use rayforest::session::plan::Plan;
 use rayforest::session::trace::TraceError;
 use rayforest::session::{Class, Options, Session, Work};
@@ -106,7 +108,7 @@ fn set_to(scene: &mut Scene, path: &str, value: &str) -> String {
 
 /// What is planned for an edit.
 fn plan(session: &mut Session, scene: &Scene) -> Option<Plan> {
-    // A session that can shade the scene at once does: a twin is asked.
+    // An edit that shading is enough for would be made.
     match session.class_of(scene) {
         Class::Refold | Class::Regrow => {}
         _ => return None,
@@ -227,12 +229,31 @@ fn wander(name: &str, first: &Scene, memory: Option<f64>) {
             told += &format!("\n  {words}");
             classes.push(step(&mut session, &scene, &mut random, &told));
             past.push(scene);
+            if random.below(8) == 0 {
+                told += "\n  saved, kept and opened again";
+                session = reopened(&session, random.below(2) == 0);
+                assert_same_picture(&session, &open(session.scene(), 2), &told);
+            }
         }
     }
     let count = |class| classes.iter().filter(|c| **c == class).count();
     let counts = [Class::Reshade, Class::Refold, Class::Regrow, Class::Retrace].map(count);
     eprintln!("{name}: reshade, refold, regrow, retrace: {counts:?} times");
     assert!(counts[..3].iter().all(|&n| n > 0) && counts[3] == 0, "{name}: {counts:?}");
+}
+
+/// The session of a scene that was saved, with what was kept of it.
+fn reopened(session: &Session, trees: bool) -> Session {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("kept");
+    cache::write(session, &path, trees, &Progress::default()).unwrap();
+    let saved = write::text(session.scene());
+    let scene = read::text(&saved, Path::new("saved.toml")).unwrap();
+    let (opened, report) =
+        Session::open_cached(Arc::new(scene), &path, session.options(), &Progress::default())
+            .unwrap();
+    assert_eq!((report.edit.class, report.edit.rays.total()), (Class::None, 0));
+    opened
 }
 
 fn small(name: &str) -> Scene {
