@@ -46,7 +46,8 @@ pub struct Options {
     pub threads: usize,
     /// Bytes that trees, matrix and highlight lists may take together. Not counted: the geometry,
     /// the list of terms, each thread's scratch (a few tiles), and, while a scene is traced again,
-    /// the matrix before it, which is held so that a cancel costs nothing, and that of a preview.
+    /// the matrix before it, which is held so that a cancel costs nothing, and that of a preview;
+    /// while pixels are grown again, what they replace.
     pub memory: u64,
 }
 
