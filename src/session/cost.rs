@@ -100,14 +100,15 @@ fn cost_of_refraction(session: &mut Session, altered: &Scene) -> Option<Cost> {
     })
 }
 
-/// The same while the scene is still traced and `session` holds a preview of it: `None` also where
-/// only the whole picture's frontier can tell.
+/// The same while the scene is still traced or grown and `session` holds a preview of it: `None` also
+/// where only the whole picture's trees can tell.
 pub fn cost_of_preview(session: &mut Session, path: &str) -> Option<Cost> {
     let altered = path::altered(session.scene(), path)?;
-    knob(session.scene(), &altered).is_none().then(|| match cost_of(session, &altered) {
-        Cost::Reread(_) | Cost::Regrow(_) => Cost::TraceAll,
-        cost => cost,
-    })
+    if knob(session.scene(), &altered).is_some() {
+        return None;
+    }
+    let cost = cost_of(session, &altered);
+    (!matches!(cost, Cost::Reread(_) | Cost::Regrow(_))).then_some(cost)
 }
 
 /// What may bring a branch to life, unless everything is traced anyway.
