@@ -4,6 +4,7 @@
 pub mod highlight;
 mod lists;
 pub mod merge;
+pub mod stay;
 #[cfg(test)]
 mod tests;
 pub mod transport;
@@ -11,6 +12,7 @@ pub mod trie;
 
 use highlight::HighlightPower;
 use lists::{HighlightLists, HighlightSample};
+use stay::{GONE, Stay, Staying};
 use transport::{
     BlockStart, Frontier, FrontierMark, HighlightList, Plane, SPARSE_LANES, Single, TransportTile,
 };
@@ -55,6 +57,17 @@ pub struct Folder {
     sorted: Vec<HighlightSample>,
     lists: HighlightLists,
     power: HighlightPower,
+    staying: Staying,
+    /// Blocks of the tile of which some rows stay, in the order in which they are folded.
+    staying_blocks: Vec<usize>,
+}
+
+/// What a slot's coefficients are made of, or where coefficients that stay stand in the old tile.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Row {
+    Slot(u32),
+    Plane(u32),
+    Singles(u32, u32),
 }
 
 /// An answer of the trie: most trees look up what the tree before them did, in the same order.
@@ -119,6 +132,45 @@ impl Folder {
         self.edges.clear();
         self.edge_starts.clear();
         self.edge_starts.push(0);
+        self.staying_blocks.clear();
+    }
+
+    /// Begins a tile of which some terms stay as they are in `old`, whose ids are of `trie`.
+    pub fn begin_part(&mut self, old: &TransportTile, trie: &Trie, stay: &Stay) {
+        self.begin_tile();
+        self.staying.begin(old, trie, stay, &mut self.trie);
+        for &id in self.staying.terms.iter().filter(|id| **id != GONE) {
+            self.trie.mark(id, Marks::TERM);
+        }
+    }
+
+    /// Folds what was grown again of the trees of a block, `block` of the tile `old`: all samples of
+    /// every term that does not stay. A camera ray that left the scene shows what it showed.
+    pub fn block_part(
+        &mut self,
+        reader: &mut Reader,
+        covered: [bool; LANES],
+        samples: u32,
+        names: &Names,
+        (old, block): (&TransportTile, usize),
+    ) {
+        for (lane, _) in covered.iter().enumerate().filter(|(_, c)| **c) {
+            for _ in 0..samples {
+                self.position = 0;
+                if reader.sample() {
+                    self.tree(reader, lane, names);
+                }
+            }
+        }
+        for &FrontierMark { entry, mask, rays } in old.frontier.block(block) {
+            let id = self.staying.frontier[entry as usize];
+            if id != GONE {
+                self.trie.mark(id, self.trie.nodes()[id as usize].end_mark());
+                self.edges.push(Edge { id, mask, rays });
+            }
+        }
+        self.staying_blocks.push(block);
+        self.end_block();
     }
 
     /// Folds the trees of a block: `samples` of each lane that `covered` says to hold a pixel.
@@ -168,8 +220,10 @@ impl Folder {
         self.stack.push((ROOT, 1.0));
         while let Some((path, weight)) = self.stack.pop() {
             let node = reader.node();
-            let ambient = Factor::new(Kind::Ambient, node.material, node.slot);
-            self.add(path, ambient, lane, weight);
+            if node.whole {
+                let ambient = Factor::new(Kind::Ambient, node.material, node.slot);
+                self.add(path, ambient, lane, weight);
+            }
             for _ in 0..node.lights {
                 let (hit, crossed) = reader.light();
                 self.light((path, weight), node, (hit, crossed), lane, names);
@@ -351,6 +405,28 @@ impl Folder {
     ///
     /// `weight` is that of one sample; `peaks` has that of every material.
     pub fn finish_tile(&mut self, weight: f32, peaks: &[Option<Peak>]) -> Folded<'_> {
+        self.finish(weight, peaks, None)
+    }
+
+    /// Ends a tile that [`Folder::begin_part`] began, with what stays of `old`.
+    ///
+    /// # Panics
+    /// If the highlight lists of `old` were released.
+    pub fn finish_part(
+        &mut self,
+        weight: f32,
+        peaks: &[Option<Peak>],
+        old: &TransportTile,
+    ) -> Folded<'_> {
+        self.finish(weight, peaks, Some(old))
+    }
+
+    fn finish(
+        &mut self,
+        weight: f32,
+        peaks: &[Option<Peak>],
+        old: Option<&TransportTile>,
+    ) -> Folded<'_> {
         let ranks = self.trie.canonical_ranks();
         let mut tile = TransportTile::default();
         let local = self.dictionary(&ranks, &mut tile);
@@ -362,15 +438,26 @@ impl Folder {
         tile.entries.reserve_exact(many.len());
         tile.planes.reserve_exact(many.len());
         tile.singles.reserve_exact(few.iter().sum::<u32>() as usize);
-        let mut order: Vec<(u32, u32)> = Vec::new();
+        let mut order: Vec<(u32, Row)> = Vec::new();
         tile.frontier = self.frontier(&ranks);
         for block in 0..self.starts.len() - 1 {
             let slots = self.starts[block]..self.starts[block + 1];
             order.clear();
-            order.extend(slots.map(|slot| (local[self.ids[slot as usize] as usize], slot)));
+            let row = |slot: u32| (local[self.ids[slot as usize] as usize], Row::Slot(slot));
+            order.extend(slots.map(row));
+            if let Some(old) = old {
+                self.rows_that_stay(old, self.staying_blocks[block], &local, &mut order);
+            }
             order.sort_unstable();
-            for &(entry, slot) in &order {
-                self.places[slot as usize] = self.store(entry, slot as usize, weight, &mut tile);
+            for &(entry, row) in &order {
+                match (row, old) {
+                    (Row::Slot(slot), _) => {
+                        let at = self.store(entry, slot as usize, weight, &mut tile);
+                        self.places[slot as usize] = at;
+                    }
+                    (row, Some(old)) => self.keep(entry, row, old, &mut tile),
+                    (_, None) => {}
+                }
             }
             tile.starts.push(BlockStart {
                 plane: tile.planes.len() as u32,
@@ -381,8 +468,54 @@ impl Folder {
         let mut highlights = self.lists.group();
         self.power.take_logarithms(&mut highlights, peaks);
         self.power.fold(&mut tile, &highlights, peaks, weight);
-        tile.highlights = Some(highlights);
+        tile.highlights = Some(match old.map(|old| old.highlights.as_ref()) {
+            None => highlights,
+            Some(old) => self.staying.with_lists(old.expect("lists are kept"), &highlights),
+        });
         Folded { trie: &self.trie, tile }
+    }
+
+    /// Adds a block's rows that stay, by their entries in the new dictionary.
+    fn rows_that_stay(
+        &self,
+        old: &TransportTile,
+        block: usize,
+        local: &[u32],
+        order: &mut Vec<(u32, Row)>,
+    ) {
+        let entry = |term: usize| match self.staying.terms[term] {
+            GONE => None,
+            id => Some(local[id as usize]),
+        };
+        let (rows, start) = (old.block(block), old.starts[block]);
+        for (&term, at) in rows.entries.iter().zip(start.plane..) {
+            order.extend(entry(term as usize).map(|entry| (entry, Row::Plane(at))));
+        }
+        let mut at = start.single;
+        for same in rows.singles.chunk_by(|a, b| a.entry() == b.entry()) {
+            let end = at + same.len() as u32;
+            let row = Row::Singles(at, end);
+            order.extend(entry(same[0].entry()).map(|entry| (entry, row)));
+            at = end;
+        }
+    }
+
+    /// Stores a row that stays, and notes where.
+    fn keep(&mut self, entry: u32, row: Row, old: &TransportTile, tile: &mut TransportTile) {
+        match row {
+            Row::Slot(_) => {}
+            Row::Plane(at) => {
+                self.staying.planes[at as usize] = tile.planes.len() as u32;
+                tile.entries.push(entry);
+                tile.planes.push(old.planes[at as usize]);
+            }
+            Row::Singles(from, to) => {
+                self.staying.singles[from as usize] = tile.singles.len() as u32;
+                let singles = &old.singles[from as usize..to as usize];
+                let single = |s: &Single| Single::new(entry, s.lane(), s.coefficient);
+                tile.singles.extend(singles.iter().map(single));
+            }
+        }
     }
 
     /// Stores a slot's coefficients as a plane or one by one; where they are.

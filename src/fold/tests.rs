@@ -1,7 +1,7 @@
 //! Folding of small made-up trees against sums done by hand.
 
 use super::*;
-use crate::forest::grow::Sink;
+use crate::forest::sink::{Side, Sink};
 use crate::forest::tree::{Ends, NO_FRESNEL, TileTrees};
 use crate::scene::model::Measure;
 
@@ -9,7 +9,8 @@ const ALL: [bool; LANES] = [true; LANES];
 
 fn node(material: u16, reflected: Branch) -> Node {
     let ends = Ends::new(reflected, Branch::Zero, false);
-    Node { t: 1.0, primitive: 0, material, lights: 0, slot: 0, ends, fresnel: NO_FRESNEL }
+    let (t, primitive, lights, slot, fresnel) = (1.0, 0, 0, 0, NO_FRESNEL);
+    Node { t, primitive, material, lights, slot, whole: true, ends, fresnel }
 }
 
 /// The peak of Phong's exponent.
@@ -34,7 +35,7 @@ fn block(mirrors: usize) -> TileTrees {
             trees.light(lit(0, 0.5, 0.25, 2), &[2, 2]);
         } else {
             let name = trees.node(node(0, Branch::Grown));
-            trees.missed(name, crate::forest::grow::Side::Reflected);
+            trees.missed(name, Side::Reflected);
         }
         trees.sample(false);
     }

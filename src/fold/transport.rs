@@ -1,5 +1,7 @@
 //! The transport matrix: pixels times terms, in blocks of sixteen pixels.
 
+use std::sync::Arc;
+
 use super::trie::Trie;
 use crate::film::layout::{LANES, Layout, TILE_BLOCKS};
 use crate::scene::factor::Factor;
@@ -20,8 +22,8 @@ pub struct Transport {
     pub samples: u32,
     /// All terms of the picture in canonical order.
     pub trie: Trie,
-    /// One part per tile.
-    pub tiles: Vec<TransportTile>,
+    /// One part per tile, shared with what grows some of the picture again.
+    pub tiles: Vec<Arc<TransportTile>>,
 }
 
 /// Pixels of a block in which a term may occur at most to be stored as single coefficients; with
@@ -226,7 +228,7 @@ impl HighlightList {
 impl Transport {
     /// Allocated bytes of the matrix and its terms, without highlights.
     pub fn bytes(&self) -> usize {
-        self.trie.bytes() + self.tiles.iter().map(TransportTile::bytes).sum::<usize>()
+        self.trie.bytes() + self.tiles.iter().map(|tile| tile.bytes()).sum::<usize>()
     }
 
     /// Allocated bytes of all highlight lists.
@@ -240,7 +242,8 @@ impl Transport {
             true => Factor::new(factor.kind(), index[factor.index()], factor.slot() as u8),
             false => factor,
         });
-        for highlights in self.tiles.iter_mut().filter_map(|tile| tile.highlights.as_mut()) {
+        let tiles = self.tiles.iter_mut().map(Arc::make_mut);
+        for highlights in tiles.filter_map(|tile| tile.highlights.as_mut()) {
             for group in &mut highlights.groups {
                 group.material = index[group.material as usize];
             }

@@ -10,6 +10,8 @@ use super::kept::{Met, Recall, Recalled};
 use super::lobe::{self, Lit, Lobe};
 use super::media::{Crossing, Media};
 use super::sampling;
+use super::scope::At;
+use super::sink::{Side, Sink};
 use super::surface::Surface;
 use super::tree::{BLOCKED, Branch, Ends, LightHit, NO_FRESNEL, Node, weights};
 use crate::film::layout::{LANES, Layout, Place};
@@ -18,44 +20,6 @@ use crate::progress::{Cancelled, Progress};
 use crate::scene::factor::{End, Factor, FactorValues, Kind, PathWeight};
 use crate::scene::model::Model;
 use crate::scene::{LightPlace, Material, Scene};
-
-/// What receives the trees: storage, or nothing, so that tracing with and without keeping is the
-/// same code. Nodes arrive in preorder, a node's lights right after it.
-pub trait Sink {
-    /// Bytes that it holds.
-    fn bytes(&self) -> usize;
-    /// A block of 16 pixels begins.
-    fn block(&mut self);
-    /// A sample begins; whether its ray met the scene.
-    fn sample(&mut self, hit: bool);
-    /// A node; gives the name by which [`Sink::missed`] refers to it.
-    fn node(&mut self, node: Node) -> u32;
-    /// The ray of this branch of a node left the scene.
-    fn missed(&mut self, node: u32, side: Side);
-    /// A light in front of the last node.
-    fn light(&mut self, hit: LightHit, crossed: &[u32]);
-}
-
-/// Drops what it is given.
-pub struct Discard;
-
-impl Sink for Discard {
-    #[inline(always)]
-    fn bytes(&self) -> usize {
-        0
-    }
-    fn block(&mut self) {}
-    #[inline(always)]
-    fn sample(&mut self, _: bool) {}
-    #[inline(always)]
-    fn node(&mut self, _: Node) -> u32 {
-        0
-    }
-    #[inline(always)]
-    fn missed(&mut self, _: u32, _: Side) {}
-    #[inline(always)]
-    fn light(&mut self, _: LightHit, _: &[u32]) {}
-}
 
 /// Why growing stopped before its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,15 +40,6 @@ impl From<Cancelled> for Stop {
 
 /// Transparent surfaces that a shadow ray may cross.
 pub const MOST_CROSSED: usize = BLOCKED as usize - 1;
-
-/// Which branch of a node.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
-    /// The mirror ray.
-    Reflected,
-    /// The refracted ray.
-    Transmitted,
-}
 
 /// Rays cast, by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -128,14 +83,14 @@ impl AddAssign for RayCounts {
 
 /// All that tracing reads, made once per trace and shared by its workers.
 pub struct Grower<'a> {
-    geometry: &'a Geometry,
+    pub(super) geometry: &'a Geometry,
     values: FactorValues,
     /// Per solid.
     opaque: Vec<bool>,
     /// Directions are of length 1.
-    lights: Vec<LightPlace>,
+    pub(super) lights: Vec<LightPlace>,
     /// Per light the key of its records in kept trees.
-    keys: Vec<u16>,
+    pub(super) keys: Vec<u16>,
     /// Per solid.
     iors: Vec<f64>,
     models: Vec<Model>,
@@ -143,44 +98,81 @@ pub struct Grower<'a> {
     weighing: Vec<bool>,
     /// Per solid the index of refraction with which the kept trees were grown.
     iors_before: Vec<f64>,
-    view: View,
-    layout: Layout,
-    samples: u32,
-    level: Level,
+    pub(super) view: View,
+    pub(super) layout: Layout,
+    pub(super) samples: u32,
+    pub(super) level: Level,
 }
 
 /// What one thread needs while tracing.
 pub struct Worker {
     stack: Stack,
-    pending: Vec<Pending>,
+    pub(super) pending: Vec<Pending>,
     crossed: Vec<u32>,
-    media: Media,
+    pub(super) media: Media,
     /// Rays that this worker cast: what kept trees answer is not cast.
     pub rays: RayCounts,
 }
 
+/// A surface as a ray meets it, and the media on both sides.
+pub(super) struct Arrival {
+    pub(super) at: Interaction,
+    pub(super) surface: Surface,
+    pub(super) crossing: Crossing,
+    /// Index of refraction in front over that behind.
+    pub(super) eta: f64,
+}
+
 /// When to stop.
 #[derive(Clone, Copy)]
-struct Limits<'a> {
-    most: usize,
-    progress: &'a Progress,
+pub(super) struct Limits<'a> {
+    pub(super) most: usize,
+    pub(super) progress: &'a Progress,
+}
+
+impl Limits<'_> {
+    /// Asked before every ray.
+    #[inline(always)]
+    pub(super) fn check(self, sink: &impl Sink) -> Result<(), Stop> {
+        self.progress.check()?;
+        if sink.bytes() > self.most { Err(Stop::Branches) } else { Ok(()) }
+    }
 }
 
 /// A ray still to be followed.
-struct Pending {
-    ray: Ray,
-    leaving: Option<Leaving>,
-    path: PathWeight,
+pub(super) struct Pending {
+    pub(super) ray: Ray,
+    pub(super) leaving: Option<Leaving>,
+    pub(super) path: PathWeight,
     /// Product of Fresnel's reflectances on the path.
-    geometric: f32,
-    parent: Option<(u32, Side)>,
-    medium: u32,
-    known: Known,
+    pub(super) geometric: f32,
+    pub(super) parent: Option<(u32, Side)>,
+    pub(super) medium: u32,
+    pub(super) known: Known,
+    /// Where it stands in the scope: only what a [scope](super::scope::Scope) names is grown.
+    pub(super) scope: At,
+}
+
+impl Pending {
+    /// A ray from the eye.
+    #[inline(always)]
+    pub(super) fn eye(ray: Ray, known: Known, scope: At) -> Pending {
+        Pending {
+            ray,
+            leaving: None,
+            path: PathWeight::EYE,
+            geometric: 1.0,
+            parent: None,
+            medium: Media::OUTSIDE,
+            known,
+            scope,
+        }
+    }
 }
 
 /// What kept trees know of a ray.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Known {
+pub(super) enum Known {
     /// Nothing: it is cast.
     Nothing,
     /// Its node is the next one of the kept trees.
@@ -192,11 +184,13 @@ enum Known {
     Another,
     /// It is followed no longer: the next node, and all below it, is of no use.
     Dropped,
+    /// Its node is the next one, and it and all below it stay as they are.
+    Kept,
 }
 
 /// What kept trees know of the rays of a node's branch, in front of which the same ray arrived. `ray`
 /// says whether the branch's ray is the same too, `followed` whether it is wanted.
-fn known(before: Option<Branch>, ray: bool, followed: bool) -> Known {
+pub(super) fn known(before: Option<Branch>, ray: bool, followed: bool) -> Known {
     match before {
         Some(Branch::Grown) if !followed => Known::Dropped,
         Some(Branch::Grown) if ray => Known::Hit,
@@ -332,49 +326,63 @@ impl<'a> Grower<'a> {
             Some(true) => Known::Hit,
             Some(false) => Known::Missed,
         };
-        let root = Pending {
-            ray,
-            leaving: None,
-            path: PathWeight::EYE,
-            geometric: 1.0,
-            parent: None,
-            medium: Media::OUTSIDE,
-            known,
-        };
-        worker.pending.push(root);
+        worker.pending.push(Pending::eye(ray, known, At::ALL));
         while let Some(next) = worker.pending.pop() {
-            limits.progress.check()?;
-            if sink.bytes() > limits.most {
-                return Err(Stop::Branches);
-            }
-            if let (Known::Another | Known::Dropped, Some(kept)) = (next.known, kept.as_mut()) {
-                kept.skip();
-            }
-            let recalled = match next.known {
-                Known::Dropped => continue,
-                Known::Hit => kept.as_mut().map(Recall::node),
-                _ => None,
-            };
-            let hit = match (recalled, next.known) {
-                (Some(r), _) => Some(Hit { t: r.node.t, primitive: r.node.primitive }),
-                (None, Known::Missed) => None,
-                (None, _) => {
-                    worker.rays.count(next.parent.map(|(_, side)| side));
-                    self.geometry.closest_hit(simd, &mut worker.stack, &next.ray, next.leaving)
-                }
-            };
-            match (hit, next.parent) {
-                (Some(hit), parent) => {
-                    if parent.is_none() {
-                        sink.sample(true);
-                    }
-                    self.node(simd, worker, &next, (hit, recalled), sink)?;
-                }
-                (None, Some((node, side))) => sink.missed(node, side),
-                (None, None) => sink.sample(false),
-            }
+            limits.check(sink)?;
+            self.follow_ray(simd, worker, &next, kept, sink)?;
         }
         Ok(())
+    }
+
+    /// Grows the node that a ray meets, if it meets any.
+    #[inline(always)]
+    pub(super) fn follow_ray<S: Simd, K: Sink>(
+        &self,
+        simd: S,
+        worker: &mut Worker,
+        next: &Pending,
+        kept: &mut Option<Recall<'_>>,
+        sink: &mut K,
+    ) -> Result<(), Stop> {
+        if let (Known::Another | Known::Dropped, Some(kept)) = (next.known, kept.as_mut()) {
+            kept.skip();
+        }
+        let recalled = match next.known {
+            Known::Dropped => return Ok(()),
+            Known::Hit => kept.as_mut().map(Recall::node),
+            _ => None,
+        };
+        let hit = match (recalled, next.known) {
+            (Some(r), _) => Some(Hit { t: r.node.t, primitive: r.node.primitive }),
+            (None, Known::Missed) => None,
+            (None, _) => {
+                worker.rays.count(next.parent.map(|(_, side)| side));
+                self.geometry.closest_hit(simd, &mut worker.stack, &next.ray, next.leaving)
+            }
+        };
+        match (hit, next.parent) {
+            (Some(hit), parent) => {
+                if parent.is_none() {
+                    sink.sample(true);
+                }
+                self.node(simd, worker, next, (hit, recalled), sink)?;
+            }
+            (None, Some((node, side))) => sink.missed(node, side),
+            (None, None) => sink.sample(false),
+        }
+        Ok(())
+    }
+
+    /// What a ray finds where it meets a surface.
+    #[inline(always)]
+    pub(super) fn arrive(&self, worker: &mut Worker, from: &Pending, hit: Hit) -> Arrival {
+        let at = self.geometry.interaction(&from.ray, hit);
+        let mut surface = Surface::new(&at, from.ray.direction);
+        let crossing = worker.media.cross(from.medium, &at, surface.entering);
+        let eta = crossing.eta(&self.iors);
+        let refracted = surface.refract(eta);
+        (surface.contrast, surface.refracted) = (crossing.contrast(&self.iors), refracted);
+        Arrival { at, surface, crossing, eta }
     }
 
     /// Stores a node, asks its lights, and queues its branches.
@@ -387,12 +395,8 @@ impl<'a> Grower<'a> {
         (hit, mut recalled): (Hit, Option<Recalled<'_>>),
         sink: &mut K,
     ) -> Result<(), Stop> {
-        let at = self.geometry.interaction(&from.ray, hit);
-        let mut surface = Surface::new(&at, from.ray.direction);
-        let crossing = worker.media.cross(from.medium, &at, surface.entering);
-        let eta = crossing.eta(&self.iors);
-        let refracted = surface.refract(eta);
-        (surface.contrast, surface.refracted) = (crossing.contrast(&self.iors), refracted);
+        let Arrival { at, surface, crossing, eta } = self.arrive(worker, from, hit);
+        let refracted = surface.refracted;
         let total = refracted.is_none();
         let fresnel = self.reflectance(at.material, &surface);
         let [mirrored, passed] = weights(fresnel);
@@ -401,8 +405,16 @@ impl<'a> Grower<'a> {
         let transmitted = (!total).then(|| follow(Kind::Transmit, passed));
         let ends = Ends::new(branch(reflected), transmitted.map_or(Branch::Absent, branch), total);
         let (material, slot) = (at.material, at.slot);
-        let node =
-            Node { t: hit.t, primitive: hit.primitive, material, lights: 0, slot, ends, fresnel };
+        let node = Node {
+            t: hit.t,
+            primitive: hit.primitive,
+            material,
+            lights: 0,
+            slot,
+            whole: true,
+            ends,
+            fresnel,
+        };
         let name = sink.node(node);
         for (light, place) in self.lights.iter().enumerate() {
             let light = (light as u16, place);
@@ -420,7 +432,17 @@ impl<'a> Grower<'a> {
                 }
             };
             let (parent, geometric) = (Some((name, side)), by * from.geometric);
-            worker.pending.push(Pending { ray, leaving, path, geometric, parent, medium, known });
+            let scope = At::ALL;
+            worker.pending.push(Pending {
+                ray,
+                leaving,
+                path,
+                geometric,
+                parent,
+                medium,
+                known,
+                scope,
+            });
         };
         let same = ends.is_some() && self.refracts_as_before(&crossing, eta);
         let through = transmitted.and_then(Result::ok).zip(refracted);
@@ -447,7 +469,7 @@ impl<'a> Grower<'a> {
 
     /// Fresnel's reflectance, or [`NO_FRESNEL`] of a material whose branches it does not weigh.
     #[inline(always)]
-    fn reflectance(&self, material: u16, surface: &Surface) -> f32 {
+    pub(super) fn reflectance(&self, material: u16, surface: &Surface) -> f32 {
         match self.weighing[material as usize] {
             true => surface.reflectance() as f32,
             false => NO_FRESNEL,
@@ -456,7 +478,7 @@ impl<'a> Grower<'a> {
 
     /// The rule of liveness for a branch of this geometric weight.
     #[inline(always)]
-    fn follow(
+    pub(super) fn follow(
         &self,
         from: &Pending,
         (kind, material): (Kind, u16),
@@ -489,7 +511,7 @@ impl<'a> Grower<'a> {
     /// through it, unless `met` still stands. Where nothing passes, the surface's own solid is what
     /// stops the latter.
     #[inline(always)]
-    fn light<S: Simd, K: Sink>(
+    pub(super) fn light<S: Simd, K: Sink>(
         &self,
         simd: S,
         worker: &mut Worker,
@@ -507,7 +529,7 @@ impl<'a> Grower<'a> {
         if !front && behind == Lobe::NONE {
             return Ok(());
         }
-        let stopped = LightHit { light, crossed: BLOCKED, n_dot_l: 0.0, angle: 1.0, weight: 0.0 };
+        let stopped = LightHit::stopped(light);
         if !front && self.opaque[at.solid as usize] {
             sink.light(stopped, &[at.solid]);
             return Ok(());
@@ -573,7 +595,7 @@ fn with_unit_direction(place: &LightPlace) -> LightPlace {
     }
 }
 
-fn branch(followed: Result<PathWeight, End>) -> Branch {
+pub(super) fn branch(followed: Result<PathWeight, End>) -> Branch {
     match followed {
         Ok(_) => Branch::Grown,
         Err(End::Zero) => Branch::Zero,

@@ -17,6 +17,15 @@ pub struct KeptNode {
     pub ends: Ends,
 }
 
+impl KeptNode {
+    /// What is kept of a node.
+    #[inline(always)]
+    pub(super) fn of(node: &Node) -> KeptNode {
+        let Node { t, primitive, material: _, lights, slot: _, whole: _, ends, fresnel: _ } = *node;
+        KeptNode { t, primitive, lights, ends }
+    }
+}
+
 /// What the shadow ray towards a light met: 4 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KeptLight {
@@ -112,10 +121,7 @@ impl KeptTrees {
         self.hits.extend(hits.chunks(64).map(|bits| {
             bits.iter().enumerate().fold(0u64, |word, (i, &hit)| word | u64::from(hit) << i)
         }));
-        self.nodes.extend(nodes.iter().map(|&node| {
-            let Node { t, primitive, material: _, lights, slot: _, ends, fresnel: _ } = node;
-            KeptNode { t, primitive, lights, ends }
-        }));
+        self.nodes.extend(nodes.iter().map(KeptNode::of));
         self.lights.extend(lights.iter().map(|hit| {
             let LightHit { light, crossed, n_dot_l: _, angle: _, weight: _ } = *hit;
             KeptLight { key: keys[light as usize], crossed }
@@ -132,6 +138,21 @@ impl KeptTrees {
         self.nodes.extend_from_slice(&other.nodes[range(from.node, to.node)]);
         self.lights.extend_from_slice(&other.lights[range(from.light, to.light)]);
         self.crossings.extend_from_slice(&other.crossings[range(from.crossing, to.crossing)]);
+        self.end_block();
+    }
+
+    /// Appends what stands in other trees between two positions of a sample's tree.
+    pub(super) fn push_range(&mut self, other: &KeptTrees, from: KeptStart, to: KeptStart) {
+        let range = |a: u32, b: u32| a as usize..b as usize;
+        self.nodes.extend_from_slice(&other.nodes[range(from.node, to.node)]);
+        self.lights.extend_from_slice(&other.lights[range(from.light, to.light)]);
+        self.crossings.extend_from_slice(&other.crossings[range(from.crossing, to.crossing)]);
+    }
+
+    /// Ends a block whose camera rays met what they met in `other`.
+    pub(super) fn end_block_as(&mut self, other: &KeptTrees, block: usize) {
+        let [from, to] = [other.blocks[block], other.blocks[block + 1]];
+        self.hits.extend_from_slice(&other.hits[from.word as usize..to.word as usize]);
         self.end_block();
     }
 
@@ -211,6 +232,19 @@ impl<'a> Recall<'a> {
         Recalled { node, lights, crossings }
     }
 
+    /// The next node, which is still to be read.
+    #[inline(always)]
+    pub(super) fn peek(&self) -> &'a KeptNode {
+        &self.trees.nodes[self.at.node as usize]
+    }
+
+    /// Passes over a node and all below it, and appends them to `into`.
+    pub(super) fn copy(&mut self, into: &mut KeptTrees) {
+        let from = self.at;
+        self.skip();
+        into.push_range(self.trees, from, self.at);
+    }
+
     /// Passes over a node and all below it.
     pub fn skip(&mut self) {
         let mut open = 1;
@@ -240,18 +274,31 @@ pub enum Met<'a> {
 }
 
 impl<'a> Recalled<'a> {
+    /// All its records, and what all of them crossed.
+    pub(super) fn records(&self) -> (&'a [KeptLight], &'a [u32]) {
+        let entries = self.lights.iter().map(|light| light.entries()).sum();
+        (self.lights, &self.crossings[..entries])
+    }
+
     /// What the shadow ray to the light with this key met; `None` if none was cast. Lights are asked
     /// for in the order in which they are kept, others in between.
     #[inline(always)]
     pub fn light(&mut self, key: u16) -> Option<Met<'a>> {
+        let (light, entries) = self.record(key)?;
+        Some(match light.crossed {
+            BLOCKED => Met::Blocker(entries[0]),
+            _ => Met::Crossed(entries),
+        })
+    }
+
+    /// The record of that light, with its crossings.
+    #[inline(always)]
+    pub(super) fn record(&mut self, key: u16) -> Option<(KeptLight, &'a [u32])> {
         let at = self.lights.iter().position(|light| light.key == key)?;
         let before: usize = self.lights[..at].iter().map(|light| light.entries()).sum();
         let light = self.lights[at];
         let (entries, rest) = self.crossings[before..].split_at(light.entries());
         (self.lights, self.crossings) = (&self.lights[at + 1..], rest);
-        Some(match light.crossed {
-            BLOCKED => Met::Blocker(entries[0]),
-            _ => Met::Crossed(entries),
-        })
+        Some((light, entries))
     }
 }

@@ -1,11 +1,14 @@
 //! Ray trees: how they are grown, and how they are kept.
 
+pub mod again;
 pub mod camera;
 pub mod grow;
 pub mod kept;
 pub mod lobe;
 mod media;
 pub mod sampling;
+pub mod scope;
+pub mod sink;
 mod surface;
 pub mod tree;
 

@@ -1,6 +1,6 @@
 //! Ray trees as flat arrays: nodes in preorder, the light that reached them, what shadows crossed.
 
-use super::grow::{Side, Sink};
+use super::sink::{Side, Sink};
 
 /// What became of a branch of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,6 +68,15 @@ impl Ends {
         BRANCHES[(self.0 >> 3 & 7) as usize]
     }
 
+    /// The same with another branch on this side.
+    #[inline(always)]
+    pub fn with(self, side: Side, branch: Branch) -> Ends {
+        match side {
+            Side::Reflected => Ends::new(branch, self.transmitted(), self.total()),
+            Side::Transmitted => Ends::new(self.reflected(), branch, self.total()),
+        }
+    }
+
     /// Whether the mirror ray carries the factor of total reflection.
     #[inline(always)]
     pub fn total(self) -> bool {
@@ -88,6 +97,8 @@ pub struct Node {
     pub lights: u16,
     /// Slot of the material's paint at the point.
     pub slot: u8,
+    /// Whether what it shows of itself is to be folded too; otherwise only its lights and branches.
+    pub whole: bool,
     /// What became of its branches.
     pub ends: Ends,
     /// Fresnel's reflectance F, or [`NO_FRESNEL`].
@@ -128,6 +139,11 @@ pub struct LightHit {
 }
 
 impl LightHit {
+    /// A light whose shadow ray an opaque solid stopped.
+    pub fn stopped(light: u16) -> LightHit {
+        LightHit { light, crossed: BLOCKED, n_dot_l: 0.0, angle: 1.0, weight: 0.0 }
+    }
+
     /// Whether it is the transmitted highlight of a light behind the surface.
     #[inline(always)]
     pub fn is_behind(&self) -> bool {
@@ -314,10 +330,7 @@ impl Sink for TileTrees {
     #[inline(always)]
     fn missed(&mut self, parent: u32, side: Side) {
         let ends = &mut self.nodes[parent as usize].ends;
-        *ends = match side {
-            Side::Reflected => Ends::new(Branch::Missed, ends.transmitted(), ends.total()),
-            Side::Transmitted => Ends::new(ends.reflected(), Branch::Missed, ends.total()),
-        };
+        *ends = ends.with(side, Branch::Missed);
     }
 
     #[inline(always)]
@@ -343,6 +356,7 @@ mod tests {
             material: 0,
             lights: 0,
             slot: 0,
+            whole: true,
             ends: Ends::new(Branch::Grown, Branch::Zero, false),
             fresnel: NO_FRESNEL,
         };

@@ -163,6 +163,12 @@ impl Geometry {
         self.primitives.solid_index(primitive)
     }
 
+    /// The material of a primitive: an index into `Scene::materials`.
+    #[inline(always)]
+    pub fn material(&self, primitive: u32) -> u16 {
+        self.surfaces.materials[self.primitives.solid_index(primitive) as usize]
+    }
+
     /// Per solid an index into `Scene::materials`.
     pub fn materials(&self) -> &[u16] {
         &self.surfaces.materials

@@ -320,7 +320,8 @@ impl Session {
         self.pool.install(|| {
             tiles.for_each_init(HighlightPower::default, |power, (tile, mark)| {
                 // Without lists its pixels are grown again.
-                *mark |= tile.highlights.is_some() && power.refold(tile, &peaks, weight);
+                *mark |=
+                    tile.highlights.is_some() && power.refold(Arc::make_mut(tile), &peaks, weight);
             });
         });
     }

@@ -1,5 +1,7 @@
 //! Which pixels an edit concerns: found in the matrix and the frontier, without a ray.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::Session;
@@ -7,6 +9,7 @@ use crate::film::layout::{LANES, Layout, TILE_BLOCKS};
 use crate::fold::merge::Blocks;
 use crate::fold::transport::TransportTile;
 use crate::fold::trie::Trie;
+use crate::forest::scope::Scope;
 use crate::scene::Scene;
 use crate::scene::change::Change;
 use crate::scene::factor::{Factor, FactorValues, Kind};
@@ -22,6 +25,9 @@ pub struct Plan {
     pub casts: bool,
     /// How many of the tiles have no kept trees: there every ray is cast.
     pub released: usize,
+    /// The terms that get other coefficients, where the rest of the matrix stays: then no more of the
+    /// kept trees is read than leads to them.
+    pub scope: Option<Scope>,
 }
 
 /// Pixels of a tile.
@@ -121,25 +127,44 @@ impl Session {
             reason.get_or_insert_with(|| "highlight lists were released for memory".into());
             concern.unlisted = self.terms_of(&change.refold, change);
         }
+        let mut alive = Vec::new();
         if change.terms || change.moves_rays.is_some() {
             let factors = self.factors_after(scene, change);
-            let mut first = None;
-            for id in self.terms.uncovered(&self.program, &factors) {
-                concern.frontier[id as usize] = true;
-                first.get_or_insert(id);
-            }
-            if let Some(id) = first {
+            alive.extend(self.terms.uncovered(&self.program, &factors));
+            alive.iter().for_each(|&id| concern.frontier[id as usize] = true);
+            if let Some(&id) = alive.first() {
                 casts = true;
                 reason.get_or_insert_with(|| self.comes_alive(id));
             }
         }
         let reason = reason?;
+        let scope = self.scope(change, nodes.is_empty(), &alive);
         let tiles = self.transport.tiles.par_iter().enumerate();
-        let find = |(tile, transport)| concern.of_tile(tile, transport);
+        let find =
+            |(tile, transport): (usize, &Arc<TransportTile>)| concern.of_tile(tile, transport);
         let tiles: Vec<PlanTile> = self.pool.install(|| tiles.filter_map(find).collect());
         let is_released = |plan: &&PlanTile| self.forest.tiles[plan.tile].is_none();
         let released = tiles.iter().filter(is_released).count();
-        Some(Plan { reason, tiles, casts: casts || released > 0, released })
+        Some(Plan { reason, tiles, casts: casts || released > 0, released, scope })
+    }
+
+    /// The terms that get other coefficients, if all of the change is either branches that come alive
+    /// or lights that are new or elsewhere; `surfaces_stay` says whether no surface is read again.
+    fn scope(&self, change: &Change, surfaces_stay: bool, alive: &[u32]) -> Option<Scope> {
+        let names = change.keeps_materials() && !change.surfaces;
+        if !surfaces_stay || !names || !change.refold.is_empty() {
+            return None;
+        }
+        match (change.shadows, change.moves_rays, alive) {
+            (true, _, []) => {
+                Some(Scope::of_lights(change.lights.iter().map(Option::is_none).collect()))
+            }
+            (false, None, _) => {
+                let factors = |&id: &u32| self.transport.trie.factors(id);
+                Some(Scope::below(alive.iter().map(factors)))
+            }
+            _ => None,
+        }
     }
 
     /// Old materials whose index of refraction shows in the new scene, and with which the trees were

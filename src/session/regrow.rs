@@ -1,7 +1,7 @@
 //! Grows some pixels' trees again, from what is kept of them, and folds them into the matrix.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -10,14 +10,17 @@ use super::Session;
 use super::plan::{Plan, PlanTile};
 use super::trace::{LEAST_BLOCK_LIMIT, TraceError, claim};
 use crate::film::Frame;
-use crate::film::layout::{Layout, TILE_BLOCKS};
+use crate::film::layout::{LANES, Layout, TILE_BLOCKS};
 use crate::fold::merge::Blocks;
-use crate::fold::transport::TransportTile;
+use crate::fold::stay::Stay;
+use crate::fold::transport::{Transport, TransportTile};
 use crate::fold::trie::{Marks, Trie};
-use crate::fold::{Folder, Names};
+use crate::fold::{Folded, Folder, Names};
 use crate::forest::Forest;
+use crate::forest::again::Again;
 use crate::forest::grow::{Grower, RayCounts, Worker};
 use crate::forest::kept::KeptTrees;
+use crate::forest::scope::Scope;
 use crate::forest::tree::TileTrees;
 use crate::geometry::Geometry;
 use crate::math::exposure_factor;
@@ -39,6 +42,9 @@ pub struct Regrow {
     forest: Forest,
     keys: Vec<u16>,
     names: Names,
+    /// What stays of the matrix, if the plan has a scope. Taken as the plan is carried out, so that the
+    /// session alone has its tiles when it merges the patches.
+    base: Mutex<Option<Base>>,
     /// Per solid, of the kept trees.
     iors_before: Vec<f64>,
     /// Per material of the new scene, of the trees when all is done.
@@ -75,7 +81,22 @@ impl Session {
             true => (0..).take(scene.lights.len()).collect(),
             false => self.light_places_after(change),
         };
+        let stay = plan.scope.as_ref().map(|scope| {
+            let mut places =
+                vec![None; 1 + self.names.lights.iter().max().map_or(0, |&m| m as usize)];
+            for (before, &place) in change.lights.iter().zip(&lights) {
+                if let Some(before) = before {
+                    places[usize::from(self.names.lights[*before as usize])] = Some(place);
+                }
+            }
+            Stay::beside(scope, &self.transport.trie, places)
+        });
+        let base = stay.map(|stay| {
+            let Transport { layout: _, samples: _, trie, tiles } = &self.transport;
+            Base { tiles: tiles.clone(), trie: trie.clone(), stay }
+        });
         Regrow {
+            base: Mutex::new(base),
             names: Names { materials: geometry.materials().to_vec(), lights },
             keys,
             geometry,
@@ -166,7 +187,10 @@ impl Session {
             if bytes <= budget {
                 return;
             }
-            bytes -= tile.highlights.take().map_or(0, |lists| lists.bytes() as u64);
+            if let Some(lists) = &tile.highlights {
+                bytes -= lists.bytes() as u64;
+                Arc::make_mut(tile).highlights = None;
+            }
         }
     }
 
@@ -185,6 +209,7 @@ impl Session {
         let tiles = self.transport.tiles.par_iter_mut().zip(parts);
         self.pool.install(|| {
             tiles.for_each(|(tile, part)| {
+                let tile = Arc::make_mut(tile);
                 tile.renumber(|id| ranks[id as usize]);
                 if let Some((Patch { blocks, mut part, .. }, global)) = part {
                     part.renumber(|id| ranks[global[id as usize] as usize]);
@@ -202,7 +227,9 @@ impl Session {
         let (trie, ids) = trie.only(&used);
         let tiles = &mut self.transport.tiles;
         self.pool.install(|| {
-            tiles.par_iter_mut().for_each(|tile| tile.renumber(|id| ids[id as usize]));
+            tiles.par_iter_mut().for_each(|tile| {
+                Arc::make_mut(tile).renumber(|id| ids[id as usize]);
+            });
         });
         self.transport.trie = trie;
     }
@@ -249,6 +276,7 @@ impl Regrow {
         done: &(dyn Fn(Patch) + Sync),
     ) -> Result<(), TraceError> {
         progress.begin(self.plan.tiles.len() as u64);
+        let base = self.base.lock().unwrap_or_else(PoisonError::into_inner).take();
         let grower =
             Grower::recalling(&self.scene, &self.geometry, self.keys.clone(), &self.iors_before);
         let next = AtomicUsize::new(0);
@@ -257,9 +285,11 @@ impl Regrow {
                 worker: grower.worker(),
                 folder: Folder::default(),
                 grown: TileTrees::default(),
+                again: Again::default(),
             };
             while let Some(at) = claim(&next, self.plan.tiles.len()) {
-                done(self.tile(&self.plan.tiles[at], &grower, &mut scratch, progress)?);
+                let (plan, base) = (&self.plan.tiles[at], base.as_ref());
+                done(self.tile((plan, base), &grower, &mut scratch, progress)?);
                 progress.step();
             }
             Ok(())
@@ -269,41 +299,16 @@ impl Regrow {
 
     fn tile(
         &self,
-        plan: &PlanTile,
+        (plan, base): (&PlanTile, Option<&Base>),
         grower: &Grower,
         scratch: &mut Scratch,
         progress: &Progress,
     ) -> Result<Patch, TraceError> {
-        let Scratch { worker, folder, grown } = scratch;
-        let samples = self.scene.trace.samples;
-        let layout = Layout::new(self.scene.picture.size);
         let old = self.forest.tiles[plan.tile].as_deref();
-        let mut trees = KeptTrees::default();
-        trees.clear();
-        if let Some(old) = old {
-            trees.reserve_as(old);
-        }
-        folder.begin_tile();
-        worker.rays = RayCounts::default();
-        let most = (self.budget / 8).max(LEAST_BLOCK_LIMIT);
-        for block in 0..TILE_BLOCKS {
-            if plan.lanes[block] == 0 {
-                if let Some(old) = old {
-                    trees.push_block(old, block);
-                }
-                continue;
-            }
-            grown.clear();
-            let at = (plan.tile, block);
-            let kept = old.map(|old| old.recall(block));
-            let stopped = grower.block_again(worker, at, kept, grown, most, progress);
-            stopped.map_err(|stop| TraceError::of(stop, self.budget))?;
-            let covered = layout.covered(plan.tile, block);
-            folder.block(&mut grown.read(0), covered, samples, &self.names);
-            trees.push_grown(grown, grower.keys());
-        }
-        let peaks: Vec<_> = self.scene.materials.iter().map(|m| Some(Peak::of(m))).collect();
-        let folded = folder.finish_tile(1.0 / samples as f32, &peaks);
+        let (trees, folded, rays) = match self.part_of(plan.tile, base) {
+            Some(part) => self.grow_part(plan, &part, grower, scratch, progress)?,
+            None => self.grow_all(plan, old, grower, scratch, progress)?,
+        };
         // They take the place of the old ones, which go when all is done.
         let replaced = old.map_or(0, KeptTrees::bytes);
         let bytes = self.kept.fetch_add(trees.bytes(), Relaxed) + trees.bytes();
@@ -315,9 +320,121 @@ impl Regrow {
             trie: folded.trie.frozen(),
             part: folded.tile,
             trees: fits.then(|| Arc::new(trees.trimmed())),
-            rays: worker.rays,
+            rays,
         })
     }
+
+    /// Grows and folds a tile's blocks.
+    fn grow_all<'a>(
+        &self,
+        plan: &PlanTile,
+        old: Option<&KeptTrees>,
+        grower: &Grower,
+        scratch: &'a mut Scratch,
+        progress: &Progress,
+    ) -> Result<(KeptTrees, Folded<'a>, RayCounts), TraceError> {
+        let Scratch { worker, folder, grown, again: _ } = scratch;
+        worker.rays = RayCounts::default();
+        let mut trees = empty_as(old);
+        folder.begin_tile();
+        for block in 0..TILE_BLOCKS {
+            if plan.lanes[block] == 0 {
+                if let Some(old) = old {
+                    trees.push_block(old, block);
+                }
+                continue;
+            }
+            grown.clear();
+            let at = (plan.tile, block);
+            let kept = old.map(|old| old.recall(block));
+            let stopped = grower.block_again(worker, at, kept, grown, self.most(), progress);
+            stopped.map_err(|stop| TraceError::of(stop, self.budget))?;
+            folder.block(&mut grown.read(0), self.covered(at), self.samples(), &self.names);
+            trees.push_grown(grown, grower.keys());
+        }
+        let folded = folder.finish_tile(1.0 / self.samples() as f32, &self.peaks());
+        Ok((trees, folded, worker.rays))
+    }
+
+    /// The same, but only of the terms in the plan's scope.
+    fn grow_part<'a>(
+        &self,
+        plan: &PlanTile,
+        part: &Part,
+        grower: &Grower,
+        scratch: &'a mut Scratch,
+        progress: &Progress,
+    ) -> Result<(KeptTrees, Folded<'a>, RayCounts), TraceError> {
+        let Scratch { worker, folder, grown: _, again } = scratch;
+        worker.rays = RayCounts::default();
+        let Part { trees: old, matrix, scope, base } = *part;
+        again.begin(empty_as(Some(old)), grower.keys());
+        folder.begin_part(matrix, &base.trie, &base.stay);
+        for block in 0..TILE_BLOCKS {
+            if plan.lanes[block] == 0 {
+                again.kept.push_block(old, block);
+                continue;
+            }
+            let (at, kept) = ((plan.tile, block), (old, scope));
+            let stopped = grower.block_part(worker, at, kept, again, self.most(), progress);
+            stopped.map_err(|stop| TraceError::of(stop, self.budget))?;
+            let (reader, covered) = (&mut again.grown.read(0), self.covered(at));
+            folder.block_part(reader, covered, self.samples(), &self.names, (matrix, block));
+        }
+        let trees = std::mem::take(&mut again.kept);
+        let folded = folder.finish_part(1.0 / self.samples() as f32, &self.peaks(), matrix);
+        Ok((trees, folded, worker.rays))
+    }
+
+    fn most(&self) -> usize {
+        (self.budget / 8).max(LEAST_BLOCK_LIMIT)
+    }
+
+    fn samples(&self) -> u32 {
+        self.scene.trace.samples
+    }
+
+    fn covered(&self, (tile, block): (usize, usize)) -> [bool; LANES] {
+        Layout::new(self.scene.picture.size).covered(tile, block)
+    }
+
+    fn peaks(&self) -> Vec<Option<Peak>> {
+        self.scene.materials.iter().map(|m| Some(Peak::of(m))).collect()
+    }
+
+    /// What of a tile stays, if a part of it does.
+    fn part_of<'a>(&'a self, tile: usize, base: Option<&'a Base>) -> Option<Part<'a>> {
+        let trees = self.forest.tiles[tile].as_deref()?;
+        let (scope, base) = (self.plan.scope.as_ref()?, base?);
+        let matrix = &*base.tiles[tile];
+        matrix.highlights.is_some().then_some(Part { trees, matrix, scope, base })
+    }
+}
+
+/// A matrix of which something stays.
+struct Base {
+    tiles: Vec<Arc<TransportTile>>,
+    trie: Trie,
+    stay: Stay,
+}
+
+/// A tile of which something stays.
+#[derive(Clone, Copy)]
+struct Part<'a> {
+    trees: &'a KeptTrees,
+    matrix: &'a TransportTile,
+    scope: &'a Scope,
+    base: &'a Base,
+}
+
+/// Empty trees with room for as much as the old ones hold.
+fn empty_as(old: Option<&KeptTrees>) -> KeptTrees {
+    let mut trees = KeptTrees::default();
+    trees.clear();
+    if let Some(old) = old {
+        trees.reserve_as(old);
+    }
+    trees
 }
 
 /// What a thread needs.
@@ -325,4 +442,5 @@ struct Scratch {
     worker: Worker,
     folder: Folder,
     grown: TileTrees,
+    again: Again,
 }

@@ -12,8 +12,9 @@ use crate::fold::transport::{Highlights, Transport, TransportTile};
 use crate::fold::trie::Trie;
 use crate::fold::{Folder, Names};
 use crate::forest::Forest;
-use crate::forest::grow::{Discard, Grower, MOST_CROSSED, RayCounts, Stop, Worker};
+use crate::forest::grow::{Grower, MOST_CROSSED, RayCounts, Stop, Worker};
 use crate::forest::kept::KeptTrees;
+use crate::forest::sink::Discard;
 use crate::forest::tree::TileTrees;
 use crate::geometry::Geometry;
 use crate::progress::{Cancelled, Progress};
@@ -444,6 +445,7 @@ impl<'a> Job<'a> {
         });
         let (layout, samples) = (self.layout, self.samples);
         let forest = Forest { layout, samples, tiles: trees };
+        let tiles = tiles.into_iter().map(Arc::new).collect();
         Ok((forest, Transport { layout, samples, trie, tiles }))
     }
 }

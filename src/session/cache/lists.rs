@@ -118,13 +118,13 @@ mod tests {
     /// Some tile's, with full lists, single coefficients and groups of both kinds.
     fn lit() -> (Lit, Trie) {
         let transport = session([96, 96], 1).transport().clone();
-        let full = |tile: &&TransportTile| {
+        let full = |tile: &&std::sync::Arc<TransportTile>| {
             let lists = tile.highlights.as_ref().unwrap();
             lists.lists.iter().filter(|list| list.full > 0).count()
         };
-        let tile = transport.tiles.iter().max_by_key(full).unwrap().clone();
+        let tile = transport.tiles.iter().max_by_key(full).unwrap();
         let lists = tile.highlights.clone().unwrap();
-        (Lit { tile, lists }, transport.trie)
+        (Lit { tile: TransportTile::clone(tile), lists }, transport.trie)
     }
 
     /// The two lists of a group that stand farthest from each other, both of whole blocks.

@@ -121,7 +121,12 @@ impl<'a> Reader<'a> {
             geometry,
             geometry_seconds,
             forest: Forest { layout, samples, tiles: trees },
-            transport: Transport { layout, samples, trie, tiles },
+            transport: Transport {
+                layout,
+                samples,
+                trie,
+                tiles: tiles.into_iter().map(Arc::new).collect(),
+            },
             state,
             trace: self.file.header.trace,
             report,

@@ -308,7 +308,7 @@ pub(super) mod tests {
             ("a coefficient is not finite", |t| t.planes[0].0[7] = f32::NAN),
             ("a coefficient is not finite", |t| t.singles[0].coefficient = f32::INFINITY),
         ];
-        hold(&session.transport().tiles[0], &cases, |tile| matrix(tile, nodes));
+        hold(&*session.transport().tiles[0], &cases, |tile| matrix(tile, nodes));
     }
 
     #[test]
@@ -365,7 +365,7 @@ pub(super) mod tests {
     fn faults_of_a_frontier_are_found() {
         let session = session([37, 9], 2);
         let nodes = session.transport().trie.nodes();
-        let several = |tile: &&TransportTile| tile.frontier.terms.len() > 1;
+        let several = |tile: &&std::sync::Arc<TransportTile>| tile.frontier.terms.len() > 1;
         let tile = session.transport().tiles.iter().find(several).unwrap();
         fn two(frontier: &Frontier) -> usize {
             let pair = frontier.starts.windows(2).find(|pair| pair[1] > pair[0] + 1);

@@ -152,7 +152,7 @@ fn all_that_was_kept_comes_back() {
 fn a_coefficient_that_differs_is_noticed() {
     let kept = kept(false);
     let mut cached = kept.read_within(1 << 30).unwrap();
-    let plane = &mut cached.transport.tiles[0].planes[0].0[3];
+    let plane = &mut Arc::make_mut(&mut cached.transport.tiles[0]).planes[0].0[3];
     *plane = f32::from_bits(plane.to_bits() ^ 1);
     assert_same(&cached, &kept.session, "on purpose");
 }
