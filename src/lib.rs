@@ -32,7 +32,9 @@
 //!   it knows is not cast, and everything else, normals, media, cosines, is computed again by the one
 //!   code that a first trace runs. An edit that shading cannot follow is a
 //!   [`Plan`](session::plan::Plan): the pixels concerned, found in the matrix and the frontier; only
-//!   their blocks are grown and folded again, and put into the matrix when all are done.
+//!   their blocks are grown and folded again, and put into the matrix when all are done. Where an edit
+//!   wakes branches or moves lights, it names a [`Scope`](forest::scope::Scope), the terms that get
+//!   other coefficients: nothing else of the trees is read, and all other rows stay.
 //! * **Keys.** A light that is moved gets a new key, so that records of where it was answer for
 //!   nothing; one that is removed leaves a gap in the list of factors, which is black. Materials are
 //!   not in the trees at all.
