@@ -4,6 +4,7 @@
 pub mod highlight;
 mod lists;
 pub mod merge;
+mod sign;
 pub mod stay;
 #[cfg(test)]
 mod tests;
@@ -46,6 +47,8 @@ pub struct Folder {
     /// Where a slot's coefficients were stored; filled as the tile is finished.
     places: Vec<u32>,
     starts: Vec<u32>,
+    /// Whether samples may have weights below 0.
+    signed: bool,
     highlights: Vec<HighlightSample>,
     highlight_starts: Vec<u32>,
     /// Where branches ended, block after block; `slots` finds them too.
@@ -126,6 +129,7 @@ impl Folder {
         self.places.clear();
         self.starts.clear();
         self.starts.push(0);
+        self.signed = false;
         self.highlights.clear();
         self.highlight_starts.clear();
         self.highlight_starts.push(0);
@@ -154,6 +158,7 @@ impl Folder {
         names: &Names,
         (old, block): (&TransportTile, usize),
     ) {
+        self.signed |= reader.is_weighted();
         for (lane, _) in covered.iter().enumerate().filter(|(_, c)| **c) {
             for _ in 0..samples {
                 self.position = 0;
@@ -181,29 +186,27 @@ impl Folder {
         samples: u32,
         names: &Names,
     ) {
+        self.signed |= reader.is_weighted();
         for (lane, _) in covered.iter().enumerate().filter(|(_, c)| **c) {
             for _ in 0..samples {
                 self.position = 0;
                 if reader.sample() {
                     self.tree(reader, lane, names);
                 } else {
-                    self.background(ROOT, lane, 1.0);
+                    self.background(ROOT, lane, reader.weight());
                 }
             }
         }
         self.end_block();
     }
 
-    /// Notes where the block ends, and in which lanes its terms occur. A coefficient that is not a
-    /// highlight's is a sum of positive numbers; a highlight's is known by its samples.
+    /// Notes where the block ends, and in which lanes its terms occur; a highlight is known by its
+    /// samples.
     fn end_block(&mut self) {
         self.stamp += 1;
         let first = self.masks.len();
-        let nonzero = |plane: &Plane| {
-            let lanes = plane.0.iter().enumerate();
-            lanes.fold(0u16, |mask, (i, &c)| mask | u16::from(c != 0.0) << i)
-        };
-        self.masks.extend(self.planes[first..].iter().map(nonzero));
+        let planes = self.planes[first..].iter();
+        self.masks.extend(planes.map(|plane| sign::lanes(plane, self.signed)));
         let from = self.highlight_starts[self.highlight_starts.len() - 1] as usize;
         for sample in &self.highlights[from..] {
             self.masks[sample.slot as usize] |= 1 << sample.lane;
@@ -217,7 +220,7 @@ impl Folder {
     /// Adds the terms of one tree to a lane.
     #[inline(always)]
     fn tree(&mut self, reader: &mut Reader, lane: usize, names: &Names) {
-        self.stack.push((ROOT, 1.0));
+        self.stack.push((ROOT, reader.weight()));
         while let Some((path, weight)) = self.stack.pop() {
             let node = reader.node();
             if node.whole {
@@ -381,7 +384,7 @@ impl Folder {
         if *stamp != self.stamp {
             (*stamp, *slot) = (self.stamp, self.ids.len() as u32);
             self.ids.push(id);
-            self.planes.push(Plane::default());
+            self.planes.push(sign::empty(self.signed));
             self.trie.mark(id, Marks::TERM);
         }
         *slot
@@ -520,7 +523,7 @@ impl Folder {
 
     /// Stores a slot's coefficients as a plane or one by one; where they are.
     fn store(&self, entry: u32, slot: usize, weight: f32, tile: &mut TransportTile) -> u32 {
-        let Plane(sums) = self.planes[slot];
+        let Plane(sums) = sign::settled(self.planes[slot], self.signed);
         let mask = u32::from(self.masks[slot]);
         if mask.count_ones() > SPARSE_LANES {
             tile.entries.push(entry);

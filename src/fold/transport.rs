@@ -6,7 +6,8 @@ use super::trie::Trie;
 use crate::film::layout::{LANES, Layout, TILE_BLOCKS};
 use crate::scene::factor::Factor;
 
-/// The coefficients of one term for the 16 pixels of a block.
+/// The coefficients of one term for the 16 pixels of a block: 0 where the term does not occur, −0
+/// where it does and samples of opposite weights cancel each other.
 #[repr(align(64))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Plane(pub [f32; LANES]);
@@ -373,7 +374,7 @@ impl Highlights {
             }
         }
         assert!(logarithms.iter().all(|&l| l <= 0.0), "a cosine above 1");
-        assert!(weights.iter().all(|&w| w >= 0.0 && w.is_finite()), "an odd weight");
+        assert!(weights.iter().all(|&w| w.is_finite()), "an odd weight");
     }
 }
 

@@ -4,7 +4,7 @@ use fearless_simd::{Simd, dispatch};
 
 use super::grow::{Arrival, Grower, Known, Limits, Pending, Stop, Worker, branch, known};
 use super::kept::{KeptLight, KeptNode, KeptTrees, Recall, Recalled};
-use super::sampling;
+use super::sampling::Sample;
 use super::scope::{At, Scope};
 use super::sink::{Side, Sink};
 use super::tree::{BLOCKED, Branch, Ends, LightHit, Node, TileTrees, weights};
@@ -98,6 +98,10 @@ impl Sink for Again {
         self.grown.block();
     }
 
+    fn weigh(&mut self, weight: f32) {
+        self.grown.weigh(weight);
+    }
+
     #[inline(always)]
     fn sample(&mut self, hit: bool) {
         self.grown.sample(hit);
@@ -167,7 +171,11 @@ impl Grower<'_> {
         sink: &mut Again,
         limits: Limits,
     ) -> Result<(), Stop> {
+        let eye = self.eye.as_ref().map(|eye| (eye, eye.weights(pixel)));
         for index in 0..self.samples {
+            let at = Sample { pixel, index };
+            // Weights stand beside all samples.
+            let weighed = eye.map(|eye| self.eye_ray(Some(eye), at, worker, sink));
             let kept = trees.as_mut().expect("kept trees");
             let hit = kept.sample();
             if hit && self.is_untouched(scope, Scope::EYE, kept.peek()) {
@@ -180,8 +188,7 @@ impl Grower<'_> {
                 continue;
             }
             worker.media.clear();
-            let [u, v] = sampling::in_pixel(pixel, index, self.samples);
-            let ray = self.view.ray(f64::from(pixel[0]) + u, f64::from(pixel[1]) + v);
+            let ray = weighed.unwrap_or_else(|| self.eye_ray(None, at, worker, sink));
             worker.pending.push(Pending::eye(ray, Known::Hit, Scope::EYE));
             while let Some(next) = worker.pending.pop() {
                 limits.check(sink)?;

@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 
+use super::sampling::on_disc;
 use crate::geometry::Ray;
+use crate::scene::motion::Opening;
 use crate::scene::{Camera, Lens};
 
 /// A camera made ready: the picture plane in world space.
@@ -30,7 +32,7 @@ pub struct Seen {
 impl View {
     /// A view of `size` pixels. The camera's invariants (eye ≠ target, up not along the view) hold.
     pub fn new(camera: &Camera, size: [u32; 2]) -> View {
-        let Camera { eye, target, up, lens } = camera;
+        let Camera { eye, target, up, lens, aperture: _, focus: _, shutter: _ } = camera;
         let forward = (*target - *eye).normalize();
         let right = forward.cross(*up).normalize();
         let up = right.cross(forward);
@@ -56,6 +58,18 @@ impl View {
         } else {
             Ray { origin: self.eye, direction: (self.forward + offset).normalize() }
         }
+    }
+
+    /// The ray of a perspective through (x, y) that crosses its lens at the point with these numbers:
+    /// all of them meet in the plane in focus, where the pinhole's ray does.
+    pub fn ray_through_lens(&self, [x, y]: [f64; 2], opening: Opening, numbers: [f64; 2]) -> Ray {
+        let Opening { radius, focus } = opening;
+        let [a, b] = on_disc(numbers).map(|n| n * radius);
+        let [right, down, forward] = self.axes();
+        let (u, v) = (x / self.size[0] - 0.5, y / self.size[1] - 0.5);
+        let on_lens = right * a + down * b;
+        let in_focus = (forward + (self.across * u + self.down * v)) * focus;
+        Ray { origin: self.eye + on_lens, direction: (in_focus - on_lens).normalize() }
     }
 
     /// Where a point of the world is seen; `None` if it is not in front of the eye.
@@ -96,7 +110,8 @@ mod tests {
     use super::*;
 
     fn camera(lens: Lens) -> Camera {
-        Camera { eye: DVec3::new(0.0, -8.0, 1.0), target: DVec3::Z, up: DVec3::Z, lens }
+        let (eye, target) = (DVec3::new(0.0, -8.0, 1.0), DVec3::Z);
+        Camera { eye, target, up: DVec3::Z, lens, ..Camera::default() }
     }
 
     #[test]
@@ -121,7 +136,8 @@ mod tests {
     fn oblique(lens: Lens) -> View {
         let eye = DVec3::new(3.0, -8.0, 5.0);
         let target = DVec3::new(-1.0, 0.5, 1.0);
-        View::new(&Camera { eye, target, up: DVec3::new(0.1, 0.2, 1.0), lens }, [640, 360])
+        let up = DVec3::new(0.1, 0.2, 1.0);
+        View::new(&Camera { eye, target, up, lens, ..Camera::default() }, [640, 360])
     }
 
     /// How far a ray passes from a point.
@@ -146,6 +162,30 @@ mod tests {
                 let beside = view.ray(seen.at[0] + 1.0, seen.at[1]);
                 assert!(miss(&beside, point) > 1e-7, "another pixel's ray misses it");
             }
+        }
+    }
+
+    #[test]
+    fn rays_through_the_lens_meet_in_the_plane_in_focus() {
+        let view = oblique(Lens::Perspective { fov_degrees: 50.0 });
+        let opening = Opening { radius: 0.3, focus: 5.0 };
+        let [right, down, forward] = view.axes();
+        for at in [[320.0, 180.0], [3.5, 77.0], [600.0, 359.0]] {
+            let point = view.point(Seen { at, depth: 5.0 });
+            let nearer = view.point(Seen { at, depth: 4.0 });
+            for numbers in [[0.5, 0.5], [0.0, 0.3], [0.9, 0.99]] {
+                let ray = view.ray_through_lens(at, opening, numbers);
+                assert!(miss(&ray, point) < 1e-12, "{at:?} {numbers:?}");
+                let arm = ray.origin - view.eye;
+                assert!(arm.length() <= 0.3 + 1e-15 && arm.dot(forward).abs() < 1e-15);
+                let [a, b] = on_disc(numbers);
+                assert!((arm - right * (0.3 * a) - down * (0.3 * b)).length() < 1e-15);
+                let off = miss(&ray, nearer) > 1e-3;
+                assert_eq!(off, numbers != [0.5, 0.5], "only the middle of the lens is a pinhole");
+            }
+            let pinhole = view.ray(at[0], at[1]);
+            let middle = view.ray_through_lens(at, opening, [0.5, 0.5]);
+            assert!((pinhole.direction - middle.direction).length() < 1e-15);
         }
     }
 

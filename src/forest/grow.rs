@@ -1,15 +1,15 @@
 //! The tracer: grows the ray tree of every sample and hands it, node by node, to a sink.
 
-use std::ops::AddAssign;
-
 use fearless_simd::{Level, Simd, dispatch};
 use glam::DVec3;
 
 use super::camera::View;
+use super::eye::Eye;
 use super::kept::{Met, Recall, Recalled};
 use super::lobe::{self, Lit, Lobe};
 use super::media::{Crossing, Media};
-use super::sampling;
+pub use super::rays::RayCounts;
+use super::sampling::Sample;
 use super::scope::At;
 use super::sink::{Side, Sink};
 use super::surface::Surface;
@@ -41,46 +41,6 @@ impl From<Cancelled> for Stop {
 /// Transparent surfaces that a shadow ray may cross.
 pub const MOST_CROSSED: usize = BLOCKED as usize - 1;
 
-/// Rays cast, by kind.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct RayCounts {
-    /// From the eye.
-    pub camera: u64,
-    /// Mirror rays, total reflection included.
-    pub reflected: u64,
-    /// Refracted rays.
-    pub transmitted: u64,
-    /// Towards lights.
-    pub shadow: u64,
-}
-
-impl RayCounts {
-    /// Counts a ray of the seen path: from the eye, or of a node's branch.
-    #[inline(always)]
-    fn count(&mut self, branch: Option<Side>) {
-        match branch {
-            None => self.camera += 1,
-            Some(Side::Reflected) => self.reflected += 1,
-            Some(Side::Transmitted) => self.transmitted += 1,
-        }
-    }
-
-    /// Rays of every kind.
-    pub fn total(self) -> u64 {
-        self.camera + self.reflected + self.transmitted + self.shadow
-    }
-}
-
-impl AddAssign for RayCounts {
-    fn add_assign(&mut self, o: RayCounts) {
-        let RayCounts { camera, reflected, transmitted, shadow } = o;
-        self.camera += camera;
-        self.reflected += reflected;
-        self.transmitted += transmitted;
-        self.shadow += shadow;
-    }
-}
-
 /// All that tracing reads, made once per trace and shared by its workers.
 pub struct Grower<'a> {
     pub(super) geometry: &'a Geometry,
@@ -99,6 +59,8 @@ pub struct Grower<'a> {
     /// Per solid the index of refraction with which the kept trees were grown.
     iors_before: Vec<f64>,
     pub(super) view: View,
+    /// Of a scene whose camera rays are not only the pinhole's within their pixels.
+    pub(super) eye: Option<Eye>,
     pub(super) layout: Layout,
     pub(super) samples: u32,
     pub(super) level: Level,
@@ -106,7 +68,7 @@ pub struct Grower<'a> {
 
 /// What one thread needs while tracing.
 pub struct Worker {
-    stack: Stack,
+    pub(super) stack: Stack,
     pub(super) pending: Vec<Pending>,
     crossed: Vec<u32>,
     pub(super) media: Media,
@@ -233,6 +195,7 @@ impl<'a> Grower<'a> {
             iors: geometry.of_solids(&iors),
             iors_before: iors_before.to_vec(),
             view: View::new(&scene.camera, scene.picture.size),
+            eye: Eye::of(scene),
             layout: Layout::new(scene.picture.size),
             samples: scene.trace.samples,
             level: Level::new(),
@@ -301,9 +264,9 @@ impl<'a> Grower<'a> {
         sink: &mut K,
         limits: Limits,
     ) -> Result<(), Stop> {
+        let eye = self.eye.as_ref().map(|eye| (eye, eye.weights(pixel)));
         for index in 0..self.samples {
-            let [u, v] = sampling::in_pixel(pixel, index, self.samples);
-            let ray = self.view.ray(f64::from(pixel[0]) + u, f64::from(pixel[1]) + v);
+            let ray = self.eye_ray(eye, Sample { pixel, index }, worker, sink);
             self.sample(simd, worker, ray, kept, sink, limits)?;
         }
         Ok(())
@@ -376,7 +339,7 @@ impl<'a> Grower<'a> {
     /// What a ray finds where it meets a surface.
     #[inline(always)]
     pub(super) fn arrive(&self, worker: &mut Worker, from: &Pending, hit: Hit) -> Arrival {
-        let at = self.geometry.interaction(&from.ray, hit);
+        let at = self.geometry.interaction(&worker.stack, &from.ray, hit);
         let mut surface = Surface::new(&at, from.ray.direction);
         let crossing = worker.media.cross(from.medium, &at, surface.entering);
         let eta = crossing.eta(&self.iors);

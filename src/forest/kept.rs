@@ -117,7 +117,7 @@ impl KeptTrees {
 
     /// Appends a block just grown, the first one in `grown`. `keys` has one key per light.
     pub fn push_grown(&mut self, grown: &TileTrees, keys: &[u16]) {
-        let TileTrees { blocks: _, hits, nodes, lights, crossings } = grown;
+        let TileTrees { blocks: _, hits, weights: _, nodes, lights, crossings } = grown;
         self.hits.extend(hits.chunks(64).map(|bits| {
             bits.iter().enumerate().fold(0u64, |word, (i, &hit)| word | u64::from(hit) << i)
         }));

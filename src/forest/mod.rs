@@ -2,10 +2,13 @@
 
 pub mod again;
 pub mod camera;
+mod eye;
+pub mod filter;
 pub mod grow;
 pub mod kept;
 pub mod lobe;
 mod media;
+mod rays;
 pub mod sampling;
 pub mod scope;
 pub mod sink;

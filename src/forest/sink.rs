@@ -18,6 +18,8 @@ pub trait Sink {
     fn bytes(&self) -> usize;
     /// A block of 16 pixels begins.
     fn block(&mut self);
+    /// The weight of the sample that begins next; said of none or of all.
+    fn weigh(&mut self, weight: f32);
     /// A sample begins; whether its ray met the scene.
     fn sample(&mut self, hit: bool);
     /// A node; gives the name by which [`Sink::missed`] refers to it.
@@ -37,6 +39,7 @@ impl Sink for Discard {
         0
     }
     fn block(&mut self) {}
+    fn weigh(&mut self, _: f32) {}
     #[inline(always)]
     fn sample(&mut self, _: bool) {}
     #[inline(always)]

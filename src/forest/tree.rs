@@ -167,6 +167,8 @@ pub struct TileTrees {
     pub blocks: Vec<Start>,
     /// Per sample, whether its ray met the scene.
     pub hits: Vec<bool>,
+    /// Per sample its weight; empty if that of every one is 1.
+    pub weights: Vec<f32>,
     /// Nodes of all samples.
     pub nodes: Vec<Node>,
     /// Light records of all nodes.
@@ -191,9 +193,10 @@ pub struct Start {
 impl TileTrees {
     /// Empties it and keeps its memory.
     pub fn clear(&mut self) {
-        let TileTrees { blocks, hits, nodes, lights, crossings } = self;
+        let TileTrees { blocks, hits, weights, nodes, lights, crossings } = self;
         blocks.clear();
         hits.clear();
+        weights.clear();
         nodes.clear();
         lights.clear();
         crossings.clear();
@@ -201,9 +204,10 @@ impl TileTrees {
 
     /// Allocated bytes of all arrays.
     pub fn bytes(&self) -> usize {
-        let TileTrees { blocks, hits, nodes, lights, crossings } = self;
+        let TileTrees { blocks, hits, weights, nodes, lights, crossings } = self;
         blocks.capacity() * size_of::<Start>()
             + hits.capacity()
+            + weights.capacity() * 4
             + nodes.capacity() * size_of::<Node>()
             + lights.capacity() * size_of::<LightHit>()
             + crossings.capacity() * 4
@@ -211,9 +215,10 @@ impl TileTrees {
 
     /// Bytes of what is stored, without room for more.
     pub fn used_bytes(&self) -> usize {
-        let TileTrees { blocks, hits, nodes, lights, crossings } = self;
+        let TileTrees { blocks, hits, weights, nodes, lights, crossings } = self;
         size_of_val(&**blocks)
             + hits.len()
+            + size_of_val(&**weights)
             + size_of_val(&**nodes)
             + size_of_val(&**lights)
             + size_of_val(&**crossings)
@@ -229,6 +234,7 @@ impl TileTrees {
     /// # Panics
     /// With what is wrong.
     pub fn validate(&self, materials: usize, solids: usize, lights: usize) {
+        assert!([0, self.hits.len()].contains(&self.weights.len()), "a weight per sample");
         let mut reader = Reader { trees: self, at: Start::default() };
         for (i, &hit) in self.hits.iter().enumerate() {
             if let Some(block) = self.blocks.iter().find(|b| b.sample as usize == i) {
@@ -275,6 +281,18 @@ pub struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
+    /// Whether samples have weights of their own.
+    pub fn is_weighted(&self) -> bool {
+        !self.trees.weights.is_empty()
+    }
+
+    /// The weight of the present sample.
+    #[inline(always)]
+    pub fn weight(&self) -> f32 {
+        let weights = &self.trees.weights;
+        weights.get(self.at.sample.wrapping_sub(1) as usize).copied().unwrap_or(1.0)
+    }
+
     /// Whether the next sample's ray met the scene; its nodes follow.
     #[inline(always)]
     pub fn sample(&mut self) -> bool {
@@ -314,6 +332,10 @@ impl Sink for TileTrees {
     #[inline(always)]
     fn bytes(&self) -> usize {
         self.used_bytes()
+    }
+
+    fn weigh(&mut self, weight: f32) {
+        self.weights.push(weight);
     }
 
     #[inline(always)]

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::generate;
+use super::motion::Moving;
 use super::placement::Placed;
 use super::primitive::{Form, Plane, Shape as OtherShape, Sphere};
 use super::shear::{Corner, corner};
@@ -29,6 +30,8 @@ pub(super) enum Kind {
     Shape,
     /// `Primitives::planes`, outside the hierarchy.
     Plane,
+    /// `Primitives::moving`; in the hierarchy they are shapes.
+    Moving,
 }
 
 /// Where a primitive is found.
@@ -60,6 +63,8 @@ pub(super) struct Compiled {
     pub(super) item: Item,
     /// Whether it has no inside: a polygon, a mesh that is not closed.
     pub(super) thin: bool,
+    /// Whether its primitives are triangles, also if it moves.
+    pub(super) mesh: bool,
 }
 
 /// All primitives, numbered in the order of the solids.
@@ -73,25 +78,48 @@ pub(super) struct Primitives {
     pub(super) triangle_normals: Vec<[u32; 3]>,
     pub(super) corners: Vec<Corner>,
     pub(super) normals: Vec<DVec3>,
+    pub(super) moving: Vec<Moving>,
     pub(super) solids: Vec<Compiled>,
     /// The solid of each primitive.
     pub(super) solid_of: Vec<u32>,
+    /// The number of the first primitive: another than 0 for those of a solid that moves.
+    first: u32,
 }
 
 impl Primitives {
     /// Expands every solid of the scene.
     pub(super) fn compile(scene: &Scene, progress: &Progress) -> Result<Primitives, Cancelled> {
         let mut all = Primitives::default();
+        let shutter = scene.shutter_time();
         for solid in &scene.solids {
             progress.check()?;
-            all.add(solid, progress)?;
+            match shutter.filter(|_| solid.moves()) {
+                Some(shutter) => all.add_moving(solid, shutter, progress)?,
+                None => all.add(solid, progress)?,
+            }
         }
+        Ok(all)
+    }
+
+    /// Expands one solid, whose primitives are numbered from `first` on.
+    pub(super) fn alone(
+        solid: &Solid,
+        first: u32,
+        progress: &Progress,
+    ) -> Result<Primitives, Cancelled> {
+        let mut all = Primitives { first, ..Primitives::default() };
+        all.add(solid, progress)?;
         Ok(all)
     }
 
     /// How many primitives there are.
     pub(super) fn count(&self) -> usize {
         self.solid_of.len()
+    }
+
+    /// The next primitive's number.
+    fn number(&self) -> u32 {
+        self.first + self.count() as u32
     }
 
     /// The solid that a primitive belongs to.
@@ -116,7 +144,7 @@ impl Primitives {
     pub(super) fn bytes(&self) -> usize {
         let polygons = self.shapes.iter().map(|shape| match &shape.form {
             Form::Polygon(corners, _) => size_of_val(&**corners),
-            Form::Cuboid(_) => 0,
+            Form::Cuboid(_) | Form::Moving(_) => 0,
             Form::PlacedCuboid(placed, _) | Form::Ellipsoid(placed, _, _) => size_of_val(&**placed),
         });
         size_of_val(&*self.spheres)
@@ -127,12 +155,13 @@ impl Primitives {
             + size_of_val(&*self.triangle_normals)
             + size_of_val(&*self.corners)
             + size_of_val(&*self.normals)
+            + self.moving.iter().map(Moving::bytes).sum::<usize>()
             + size_of_val(&*self.solids)
             + size_of_val(&*self.solid_of)
     }
 
     fn add(&mut self, solid: &Solid, progress: &Progress) -> Result<(), Cancelled> {
-        let first = self.count() as u32;
+        let first = self.number();
         let placed = Placed::new(&solid.placement);
         let (item, thin) = match &solid.shape {
             Shape::Sphere { center, radius } => self.sphere(&placed, *center, *radius),
@@ -149,8 +178,27 @@ impl Primitives {
             }
         };
         let count = self.count_of(item.kind) as u32 - item.index;
-        self.solid_of.resize((first + count) as usize, self.solids.len() as u32);
-        self.solids.push(Compiled { first, count, item, thin });
+        self.solid_of.resize(self.count() + count as usize, self.solids.len() as u32);
+        let mesh = item.kind == Kind::Triangle;
+        self.solids.push(Compiled { first, count, item, thin, mesh });
+        Ok(())
+    }
+
+    /// Adds a solid that moves until the shutter closes.
+    fn add_moving(
+        &mut self,
+        solid: &Solid,
+        shutter: f64,
+        progress: &Progress,
+    ) -> Result<(), Cancelled> {
+        let (first, index) = (self.number(), self.moving.len() as u32);
+        let moving = Moving::new(solid, first, shutter, progress)?;
+        let Compiled { first: _, count, item: _, thin, mesh } = *moving.solid();
+        self.moving.push(moving);
+        self.shapes.push(OtherShape { form: Form::Moving(index), primitive: first });
+        self.solid_of.resize(self.count() + count as usize, self.solids.len() as u32);
+        let item = Item { kind: Kind::Moving, index };
+        self.solids.push(Compiled { first, count, item, thin, mesh });
         Ok(())
     }
 
@@ -160,6 +208,7 @@ impl Primitives {
             Kind::Triangle => self.triangles.len(),
             Kind::Shape => self.shapes.len(),
             Kind::Plane => self.planes.len(),
+            Kind::Moving => self.moving.len(),
         }
     }
 
@@ -173,7 +222,7 @@ impl Primitives {
     }
 
     fn sphereflake(&mut self, placed: &Placed, spheres: Vec<(DVec3, f64)>) -> (Item, bool) {
-        let first = self.count() as u32;
+        let first = self.number();
         let numbered = spheres.into_iter().zip(first..);
         let Some(scale) = placed.similarity() else {
             let item = self.next(Kind::Shape);
@@ -197,7 +246,7 @@ impl Primitives {
         let unit = exact_normalize(normal);
         let point = placed.point(unit * offset);
         let normal = exact_normalize(placed.normal(unit));
-        let plane = Plane { normal, offset: normal.dot(point), primitive: self.count() as u32 };
+        let plane = Plane { normal, offset: normal.dot(point), primitive: self.number() };
         self.planes.push(plane);
         (item, false)
     }
@@ -210,7 +259,7 @@ impl Primitives {
         } else {
             Form::PlacedCuboid(Box::new(*placed), corners)
         };
-        self.shapes.push(OtherShape { form, primitive: self.count() as u32 });
+        self.shapes.push(OtherShape { form, primitive: self.number() });
         (item, false)
     }
 
@@ -220,7 +269,7 @@ impl Primitives {
         let normal = exact_normalize(newell_normal(&points));
         let corners = points.into_iter().map(corner).collect();
         let form = Form::Polygon(corners, normal);
-        self.shapes.push(OtherShape { form, primitive: self.count() as u32 });
+        self.shapes.push(OtherShape { form, primitive: self.number() });
         (item, true)
     }
 
@@ -231,7 +280,7 @@ impl Primitives {
         progress: &Progress,
     ) -> Result<(Item, bool), Cancelled> {
         let item = self.next(Kind::Triangle);
-        let (first, corner_base) = (self.count() as u32, self.corners.len() as u32);
+        let (first, corner_base) = (self.number(), self.corners.len() as u32);
         let normal_base = self.normals.len() as u32;
         let closed = is_closed(&mesh.triangles, progress)?;
         // A closed mesh that is wound inside out is turned: its inside is what it encloses.

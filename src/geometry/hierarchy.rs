@@ -1,9 +1,12 @@
 //! The hierarchy of boxes, eight wide: its nodes, its space, and how it is built.
 
+use std::cell::RefCell;
+
 use glam::DVec3;
 
 use super::binary::{Aabb, BinaryNode, BinaryTree};
 use super::compile::{Item, Kind, Primitives};
+use super::motion::Moment;
 use super::packet::{Packets, WIDTH};
 use super::plan::Plan;
 use super::primitive::Form;
@@ -18,19 +21,28 @@ pub(super) const STACK: usize = 512;
 pub struct Stack {
     /// Distance bits above, child reference below: ordered by distance.
     pub(super) entries: Box<[u64; STACK]>,
+    /// Where what moves is; only that asks.
+    pub(super) moment: RefCell<Moment>,
 }
 
 impl Stack {
     /// Scratch that is deep enough for `geometry`, and for any other.
     pub fn new(geometry: &super::Geometry) -> Stack {
         assert!(geometry.hierarchy.stack_needed() <= STACK, "build bounds the depth");
-        Stack::default()
+        let moment = RefCell::new(Moment::new(geometry.primitives.moving.len(), 0.0));
+        Stack { moment, ..Stack::default() }
+    }
+
+    /// The time of the rays that are asked about from now on, 0 … 1; 0 at first. Of no matter where
+    /// nothing moves.
+    pub fn set_time(&mut self, time: f64) {
+        self.moment.get_mut().time = time;
     }
 }
 
 impl Default for Stack {
     fn default() -> Stack {
-        Stack { entries: Box::new([0; STACK]) }
+        Stack { entries: Box::new([0; STACK]), moment: RefCell::default() }
     }
 }
 
@@ -201,7 +213,7 @@ impl Hierarchy {
                 Child::new(Target::Triangles, packets.add_triangles(frame, all, items))
             }
             Kind::Shape => Child::new(Target::Shapes, packets.add_shapes(items)),
-            Kind::Plane => unreachable!("planes are not in the hierarchy"),
+            Kind::Plane | Kind::Moving => unreachable!("neither is an item of the hierarchy"),
         }
     }
 }
@@ -290,8 +302,9 @@ fn box_about(all: &Primitives, item: Item, center: DVec3) -> [DVec3; 2] {
                 around(placed.point(*middle), placed.sphere_extent(*radius))
             }
             Form::Polygon(corners, _) => box_of_points(corners.iter().map(|c| point(c) - center)),
+            Form::Moving(index) => all.moving[*index as usize].bounds().map(|c| c - center),
         },
-        Kind::Plane => unreachable!("planes are not in the hierarchy"),
+        Kind::Plane | Kind::Moving => unreachable!("neither is an item of the hierarchy"),
     }
 }
 

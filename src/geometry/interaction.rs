@@ -2,26 +2,29 @@
 
 use glam::DVec3;
 
-use super::compile::{Kind, NO_NORMAL, Primitives};
+use super::compile::{Compiled, Kind, NO_NORMAL, Primitives};
 use super::primitive::{Form, Plane, Sphere, cuboid_faces};
 use super::shear::{Crossing, Shear, point};
-use super::{Geometry, Hit, Interaction, Ray};
+use super::{Geometry, Hit, Interaction, Ray, Stack};
 
 /// Point, geometric normal and, if it differs, a shading normal of any length and side.
-type Surface = (DVec3, DVec3, Option<DVec3>);
+pub(super) type Surface = (DVec3, DVec3, Option<DVec3>);
 
 impl Geometry {
-    /// The surface at a hit of this geometry by this ray.
+    /// The surface at a hit of this geometry by this ray, at the time that the stack is set to.
     #[inline(always)]
-    pub fn interaction(&self, ray: &Ray, hit: Hit) -> Interaction {
+    pub fn interaction(&self, stack: &Stack, ray: &Ray, hit: Hit) -> Interaction {
         let all = &self.primitives;
         let solid = all.solid(hit.primitive);
-        let index = (solid.item.index + (hit.primitive - solid.first)) as usize;
-        let (point, geometric_normal, smooth) = match solid.item.kind {
-            Kind::Sphere => sphere_surface(&all.spheres[index], ray, hit.t),
-            Kind::Triangle => triangle_surface(all, index, ray, hit.t),
-            Kind::Shape => form_surface(&all.shapes[index].form, ray, hit.t),
-            Kind::Plane => plane_surface(&all.planes[index], ray, hit.t),
+        let ((point, geometric_normal, smooth), rest) = match solid.item.kind {
+            Kind::Moving => {
+                let index = solid.item.index;
+                all.moving[index as usize].surface(index, &stack.moment, ray, hit)
+            }
+            _ => {
+                let surface = all.surface(solid, ray, hit);
+                (surface, surface.0)
+            }
         };
         let shading_normal =
             smooth.and_then(|n| on_side_of(geometric_normal, n)).unwrap_or(geometric_normal);
@@ -34,7 +37,7 @@ impl Geometry {
             shading_normal,
             solid: solid_index,
             material,
-            slot: checker.map_or(0, |size| checker_slot(point, size)),
+            slot: checker.map_or(0, |size| checker_slot(rest, size)),
             thin: solid.thin,
             primitive: hit.primitive,
         }
@@ -136,6 +139,7 @@ fn form_surface(form: &Form, ray: &Ray, t: f64) -> Surface {
             let at = on_plane + (from_corner - *normal * normal.dot(from_corner));
             (snap(at, *normal, on_plane), *normal, None)
         }
+        Form::Moving(_) => unreachable!("it has primitives of its own"),
     }
 }
 
@@ -153,6 +157,19 @@ fn cuboid_surface(o: DVec3, d: DVec3, corners: &[DVec3; 2], t: f64) -> (DVec3, D
 }
 
 impl Primitives {
+    /// The surface of a solid that does not move.
+    #[inline(always)]
+    pub(super) fn surface(&self, solid: &Compiled, ray: &Ray, hit: Hit) -> Surface {
+        let index = (solid.item.index + (hit.primitive - solid.first)) as usize;
+        match solid.item.kind {
+            Kind::Sphere => sphere_surface(&self.spheres[index], ray, hit.t),
+            Kind::Triangle => triangle_surface(self, index, ray, hit.t),
+            Kind::Shape => form_surface(&self.shapes[index].form, ray, hit.t),
+            Kind::Plane => plane_surface(&self.planes[index], ray, hit.t),
+            Kind::Moving => unreachable!("it has primitives of its own"),
+        }
+    }
+
     /// Whether a hit of the triangle `met`, by a ray that starts on the triangle `left` of the same
     /// mesh and goes to its `inside` or outside, is only the rounding of the ray's origin.
     ///
@@ -160,12 +177,12 @@ impl Primitives {
     /// the origin lies on the triangle's plane as far as f64 can tell, and the triangle is met from
     /// the wrong side: a ray outside of a closed mesh cannot leave it, one inside cannot enter it. A
     /// mesh that is not closed has no sides; there the origin's place decides. Other solids are
-    /// never taken for noise, however close they are.
+    /// never taken for noise, however close they are. `slack` is what the origin may be off besides.
     #[cold]
     #[inline(never)]
     pub(super) fn is_departure_noise(
         &self,
-        ray: &Ray,
+        (ray, slack): (&Ray, f64),
         [left, met]: [usize; 2],
         inside: bool,
         closed: bool,
@@ -191,7 +208,8 @@ impl Primitives {
         }
         // The origin was rounded once per coordinate, after sums over the edges it was taken from;
         // the factors 2 and 4 beyond half an ulp are margin.
-        let origin_error = ray.origin.abs() * f64::EPSILON + left_size * (4.0 * f64::EPSILON);
+        let rounding = left_size * (4.0 * f64::EPSILON) + slack;
+        let origin_error = ray.origin.abs() * f64::EPSILON + rounding;
         let own_error = size(e1) * size(e2) * size(to_corner) * (4.0 * f64::EPSILON);
         normal.dot(to_corner).abs() <= normal.abs().dot(origin_error) + own_error
     }

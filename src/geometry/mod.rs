@@ -10,6 +10,7 @@ mod compile;
 mod generate;
 mod hierarchy;
 mod interaction;
+mod motion;
 mod packet;
 mod placement;
 mod plan;
@@ -23,6 +24,8 @@ mod testing;
 mod tests;
 #[cfg(test)]
 mod tests_acne;
+#[cfg(test)]
+mod tests_motion;
 mod traverse;
 
 use std::sync::Arc;

@@ -79,7 +79,7 @@ impl Placed {
 }
 
 /// Rotation about x, then y, then z.
-fn rotation(degrees: DVec3) -> DMat3 {
+pub(super) fn rotation(degrees: DVec3) -> DMat3 {
     let (sx, cx) = sin_cos_degrees(degrees.x);
     let (sy, cy) = sin_cos_degrees(degrees.y);
     let (sz, cz) = sin_cos_degrees(degrees.z);

@@ -83,6 +83,8 @@ pub(super) enum Form {
     Ellipsoid(Box<Placed>, DVec3, f64),
     /// A flat polygon in world space, with its unit normal.
     Polygon(Box<[Corner]>, DVec3),
+    /// All of the solid with this index among those that move, which has primitives of its own.
+    Moving(u32),
 }
 
 impl Sphere {
@@ -152,6 +154,7 @@ impl Form {
                 Start::Elsewhere => polygon_root(ray, shear, corners, *normal),
                 Start::Outside | Start::Inside => Roots::NONE,
             },
+            Form::Moving(_) => Roots::NONE,
         }
     }
 }

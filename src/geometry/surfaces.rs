@@ -3,7 +3,7 @@
 use crate::scene::{Paint, Scene};
 
 /// The part of a compiled scene that changes without its hierarchy.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Surfaces {
     /// Per solid an index into `Scene::materials`.
     pub(super) materials: Vec<u16>,

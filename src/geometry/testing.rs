@@ -10,7 +10,7 @@ use crate::color::Rgb;
 use crate::progress::Progress;
 use crate::scene::mesh::Mesh;
 use crate::scene::{
-    Background, Camera, Lens, Material, Paint, Picture, Placement, Scene, Shape, Solid, Trace,
+    Background, Camera, Lens, Material, Paint, Picture, Scene, Shape, Solid, Trace,
 };
 
 /// A fixed stream of numbers (splitmix64).
@@ -75,9 +75,10 @@ pub(super) fn scene(solids: Vec<Solid>) -> Scene {
             target: DVec3::X,
             up: DVec3::Z,
             lens: Lens::Perspective { fov_degrees: 40.0 },
+            ..Camera::default()
         },
         background: Background { color: Rgb::BLACK },
-        trace: Trace { samples: 1, depth: 1, cutoff: 0.0 },
+        trace: Trace { samples: 1, depth: 1, cutoff: 0.0, ..Trace::default() },
         lights: vec![],
         materials: vec![
             material("plain", Paint::Solid(Rgb::WHITE)),
@@ -88,7 +89,7 @@ pub(super) fn scene(solids: Vec<Solid>) -> Scene {
 }
 
 pub(super) fn solid(shape: Shape) -> Solid {
-    Solid { name: String::new(), shape, material: 0, placement: Placement::default() }
+    Solid::new("", shape, 0)
 }
 
 pub(super) fn mesh_solid(mesh: Mesh) -> Solid {

@@ -22,7 +22,7 @@ fn levels() -> [Level; 2] {
 
 fn brute_closest(geometry: &Geometry, ray: &Ray, leaving: Option<Leaving>) -> Option<Hit> {
     let mut query = Closest::new();
-    geometry.traverse_all(ray, leaving, &mut query);
+    geometry.traverse_all(0.0, ray, leaving, &mut query);
     query.hit()
 }
 
@@ -30,7 +30,7 @@ fn brute_crossed(geometry: &Geometry, ray: &Ray, t_max: f64) -> Vec<u32> {
     let mut crossed = vec![];
     let opaque = vec![false; geometry.materials().len()];
     let mut query = Shadow::new(&geometry.primitives, t_max, &opaque, &mut crossed);
-    geometry.traverse_all(ray, None, &mut query);
+    geometry.traverse_all(0.0, ray, None, &mut query);
     crossed.sort_unstable();
     crossed
 }
@@ -106,7 +106,7 @@ fn disagreements(geometry: &Geometry, truth: &Geometry, rays: usize, seed: u64) 
         }
         // A bounce from the hit.
         if let Some(hit) = first {
-            let at = truth.interaction(&ray, hit);
+            let at = truth.interaction(&stack, &ray, hit);
             let (ray, leaving) = truth.spawn(&at, random.direction());
             let next = brute_closest(truth, &ray, Some(leaving));
             let found = closest(geometry, Level::new(), &mut stack, &ray, Some(leaving));
@@ -239,7 +239,8 @@ fn powers_of_two_change_no_bit() {
             let b = closest(&scaled, Level::new(), &mut stack, &large, None);
             assert_eq!(a.map(|h| (h.t * k, h.primitive)), b.map(|h| (h.t, h.primitive)));
             if let (Some(a), Some(b)) = (a, b) {
-                let (p, q) = (one.interaction(&ray, a), scaled.interaction(&large, b));
+                let (p, q) =
+                    (one.interaction(&stack, &ray, a), scaled.interaction(&stack, &large, b));
                 assert_eq!(p.point * k, q.point);
                 assert_eq!(p.geometric_normal, q.geometric_normal);
                 assert_eq!(p.shading_normal, q.shading_normal);
@@ -345,7 +346,7 @@ fn checker_on_a_boundary_shows_the_upper_cube() {
             let ray = Ray { origin, direction: (target - origin).normalize() };
             let hit = closest(&geometry, Level::new(), &mut stack, &ray, None).unwrap();
             // 3 + 3 − 1 is odd.
-            assert_eq!(geometry.interaction(&ray, hit).slot, 1, "{target}");
+            assert_eq!(geometry.interaction(&stack, &ray, hit).slot, 1, "{target}");
         }
     }
 }

@@ -89,7 +89,7 @@ fn surface_point(
     };
     let ray = Ray { origin, direction: (target - origin).normalize() };
     let hit = closest(geometry, Level::new(), stack, &ray, None)?;
-    Some(geometry.interaction(&ray, hit))
+    Some(geometry.interaction(stack, &ray, hit))
 }
 
 /// Of `count` rays that leave a surface to the outside, how many are stopped.
@@ -160,7 +160,7 @@ fn what_goes_in_comes_out() {
                 let out = closest(&geometry, Level::new(), &mut stack, &ray, Some(leaving));
                 let out = out.unwrap_or_else(|| panic!("{name} {scale} {offset}: lost inside"));
                 assert!(out.t > 0.1 * scale, "{name} of size {scale} at {offset}: {}", out.t);
-                let normal = geometry.interaction(&ray, out).geometric_normal;
+                let normal = geometry.interaction(&stack, &ray, out).geometric_normal;
                 assert!(normal.dot(direction) > 0.0);
             }
         }
@@ -203,7 +203,8 @@ fn rays_from_a_knot_meet_it_only_elsewhere() {
                 assert!(!leaving.inside, "lost inside");
                 continue;
             };
-            let facing = geometry.interaction(&ray, hit).geometric_normal.dot(ray.direction);
+            let facing =
+                geometry.interaction(&stack, &ray, hit).geometric_normal.dot(ray.direction);
             assert_eq!(facing > 0.0, leaving.inside, "size {scale} at {offset}: {}", hit.t);
         }
     }
@@ -248,7 +249,7 @@ fn lid_shadows(solids: Vec<Solid>, offset: DVec3) {
         let origin = offset + random.in_cube() * DVec3::new(1e-6, 1e-6, 0.0) + DVec3::Z * 3.0;
         let ray = Ray { origin, direction: DVec3::NEG_Z };
         let hit: Hit = closest(&bare, Level::new(), &mut stack, &ray, None).unwrap();
-        let at = bare.interaction(&ray, hit);
+        let at = bare.interaction(&stack, &ray, hit);
         let direction = (DVec3::Z * 1.5 + random.in_cube()).normalize();
         let (ray, leaving) = geometry.spawn(&at, direction);
         let light = (&ray, f64::INFINITY);

@@ -1,13 +1,15 @@
 //! The walk of a ray through the hierarchy: f32 boxes on the way, f64 decisions at the end.
 
-use fearless_simd::{Simd, f32x8, prelude::*};
+use std::cell::RefCell;
+
+use fearless_simd::{Level, Simd, f32x8, prelude::*};
 
 use glam::DVec3;
 
-use super::compile::Kind;
 use super::hierarchy::{Child, Frame, Node, STACK, Stack, Target};
+use super::motion::Moment;
 use super::packet::{ShapePacket, SpherePacket, TrianglePacket, WIDTH};
-use super::primitive::{Roots, Start};
+use super::primitive::{Form, Roots, Start};
 use super::query::Query;
 use super::shear::Shear;
 use super::{Geometry, Leaving, Ray};
@@ -41,15 +43,31 @@ pub(super) struct Beam<S: Simd> {
 }
 
 /// What a leaf needs beside the packet.
-struct Walk<'a> {
-    ray: &'a Ray,
+pub(super) struct Walk<'a> {
+    pub(super) ray: &'a Ray,
     shear: Shear,
-    leaving: Departure,
+    pub(super) leaving: Departure,
+    /// By how much the origin may be off beyond its own rounding, world units.
+    slack: f64,
+    /// For what moves.
+    pub(super) moment: &'a RefCell<Moment>,
+}
+
+impl<'a> Walk<'a> {
+    #[inline(always)]
+    pub(super) fn new(
+        ray: &'a Ray,
+        leaving: Departure,
+        slack: f64,
+        moment: &'a RefCell<Moment>,
+    ) -> Walk<'a> {
+        Walk { ray, shear: Shear::new(ray), leaving, slack, moment }
+    }
 }
 
 /// The primitive that a ray leaves, looked up.
 #[derive(Clone, Copy, Debug)]
-struct Departure {
+pub(super) struct Departure {
     /// `u32::MAX` if there is none.
     primitive: u32,
     start: Start,
@@ -123,21 +141,33 @@ impl Geometry {
         leaving: Option<Leaving>,
         query: &mut Q,
     ) {
-        let walk = Walk { ray, shear: Shear::new(ray), leaving: self.departure(leaving) };
+        let Stack { entries, moment } = stack;
+        let walk = Walk::new(ray, self.departure(leaving), 0.0, moment);
         for plane in &self.primitives.planes {
             let t = plane.root(ray, walk.leaving.start_of(plane.primitive));
             if t > 0.0 && t < f64::INFINITY {
                 query.offer(t, plane.primitive);
             }
         }
+        self.descend(simd, entries, &walk, query);
+    }
+
+    /// Offers every crossing with what the hierarchy holds.
+    #[inline(always)]
+    pub(super) fn descend<S: Simd, Q: Query>(
+        &self,
+        simd: S,
+        entries: &mut [u64; STACK],
+        walk: &Walk<'_>,
+        query: &mut Q,
+    ) {
         let Some(root) = self.hierarchy.root else { return };
         if query.is_done() {
             return;
         }
-        let beam = Beam::new(simd, &self.hierarchy.frame, ray);
+        let beam = Beam::new(simd, &self.hierarchy.frame, walk.ray);
         let mut limit = beam.limit(query.limit());
         let mut limits = f32x8::splat(simd, limit);
-        let entries = &mut *stack.entries;
         let mut top = 0;
         let mut current = root;
         loop {
@@ -149,7 +179,7 @@ impl Geometry {
                     continue;
                 }
             } else {
-                self.leaf(simd, &beam, current, limits, &walk, query);
+                self.leaf(simd, &beam, current, limits, walk, query);
                 if query.is_done() {
                     return;
                 }
@@ -207,7 +237,7 @@ impl Geometry {
             Target::Shapes => {
                 let packet: &ShapePacket = &packets.shapes[index];
                 for item in packet.items() {
-                    self.shape(*item as usize, walk, query);
+                    self.shape(simd.level(), *item as usize, walk, query);
                 }
             }
         }
@@ -233,7 +263,8 @@ impl Geometry {
         if primitive >= mesh.0 && primitive < mesh.1 {
             let left_item = item.wrapping_add(left as usize).wrapping_sub(primitive as usize);
             let (pair, inside) = ([left_item, item], start == Start::Inside);
-            if primitive == left || all.is_departure_noise(walk.ray, pair, inside, closed) {
+            let from = (walk.ray, walk.slack);
+            if primitive == left || all.is_departure_noise(from, pair, inside, closed) {
                 return;
             }
         }
@@ -241,8 +272,12 @@ impl Geometry {
     }
 
     #[inline(always)]
-    fn shape<Q: Query>(&self, item: usize, walk: &Walk<'_>, query: &mut Q) {
+    fn shape<Q: Query>(&self, level: Level, item: usize, walk: &Walk<'_>, query: &mut Q) {
         let shape = &self.primitives.shapes[item];
+        if let Form::Moving(index) = shape.form {
+            self.primitives.moving[index as usize].meet(level, index, walk, query);
+            return;
+        }
         let start = walk.leaving.start_of(shape.primitive);
         offer_roots(shape.form.roots(walk.ray, &walk.shear, start), shape.primitive, query);
     }
@@ -258,25 +293,26 @@ impl Geometry {
             };
         };
         let solid = self.primitives.solid(primitive);
-        let is_mesh = solid.item.kind == Kind::Triangle;
         Departure {
             primitive,
             start: if inside { Start::Inside } else { Start::Outside },
-            mesh: if is_mesh { (solid.first, solid.first + solid.count) } else { (0, 0) },
+            mesh: if solid.mesh { (solid.first, solid.first + solid.count) } else { (0, 0) },
             closed: !solid.thin,
         }
     }
 
-    /// Offers every crossing of every primitive: the truth that the hierarchy is held to.
+    /// Offers every crossing of every primitive at a time: the truth that the hierarchy is held to.
     #[cfg(test)]
     pub(super) fn traverse_all<Q: Query>(
         &self,
+        time: f64,
         ray: &Ray,
         leaving: Option<Leaving>,
         query: &mut Q,
     ) {
         let all = &self.primitives;
-        let walk = Walk { ray, shear: Shear::new(ray), leaving: self.departure(leaving) };
+        let moment = RefCell::new(Moment::new(all.moving.len(), time));
+        let walk = Walk::new(ray, self.departure(leaving), 0.0, &moment);
         for plane in &all.planes {
             let t = plane.root(ray, walk.leaving.start_of(plane.primitive));
             if t > 0.0 && t < f64::INFINITY {
@@ -285,7 +321,7 @@ impl Geometry {
         }
         (0..all.spheres.len()).for_each(|i| self.sphere(i, &walk, query));
         (0..all.triangles.len()).for_each(|i| self.triangle(i, &walk, query));
-        (0..all.shapes.len()).for_each(|i| self.shape(i, &walk, query));
+        (0..all.shapes.len()).for_each(|i| self.shape(Level::new(), i, &walk, query));
     }
 }
 

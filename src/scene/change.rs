@@ -55,6 +55,8 @@ impl Change {
         change.term(*ambient_light != new.ambient_light);
         change.picture(picture, &new.picture);
         change.camera(camera, &new.camera);
+        // A shutter before which nothing moves may stay open as long as it will.
+        change.form(old.shutter_time() != new.shutter_time(), "camera.shutter");
         let Background { color } = background;
         change.term(*color != new.background.color);
         change.trace(trace, &new.trace);
@@ -160,18 +162,23 @@ impl Change {
     }
 
     fn camera(&mut self, old: &Camera, new: &Camera) {
-        let Camera { eye, target, up, lens } = old;
+        let Camera { eye, target, up, lens, aperture, focus, shutter: _ } = old;
         self.ray(*eye != new.eye, "camera.eye");
         self.ray(*target != new.target, "camera.target");
         self.ray(*up != new.up, "camera.up");
         self.ray(*lens != new.lens, "the camera's lens");
+        self.ray(*aperture != new.aperture, "camera.aperture");
+        // A pinhole has no focus.
+        let focus = *focus != new.focus && old.opening() != new.opening();
+        self.ray(focus, "camera.focus");
     }
 
     /// Depth and cut-off are limits of the rule of liveness: lowering what is seen costs nothing,
     /// raising it meets the frontier.
     fn trace(&mut self, old: &Trace, new: &Trace) {
-        let Trace { samples, depth, cutoff } = old;
+        let Trace { samples, depth, cutoff, filter } = old;
         self.ray(*samples != new.samples, "trace.samples");
+        self.ray(*filter != new.filter, "trace.filter");
         self.term(*depth != new.depth || *cutoff != new.cutoff);
     }
 
@@ -262,7 +269,7 @@ impl Change {
     }
 
     fn solid(&mut self, old: &Solid, new: &Solid) {
-        let Solid { name: _, shape, material: _, placement } = old;
+        let Solid { name: _, shape, material: _, placement, motion } = old;
         // A mesh that is shared is not compared vertex by vertex.
         let same_mesh = match (shape, &new.shape) {
             (Shape::Mesh { mesh: a, .. }, Shape::Mesh { mesh: b, .. }) => Arc::ptr_eq(a, b),
@@ -273,6 +280,7 @@ impl Change {
         self.form(*translate != new.placement.translate, "translate");
         self.form(*rotate_degrees != new.placement.rotate_degrees, "rotate_degrees");
         self.form(*scale != new.placement.scale, "scale");
+        self.form(*motion != new.motion, "motion");
     }
 }
 

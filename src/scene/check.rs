@@ -10,7 +10,8 @@ use super::slot::Slot;
 use super::toml_text::number;
 use super::value::Names;
 use super::{
-    Camera, Light, LightPlace, MAX_KNOT_FACES, MAX_NAMED, MAX_PIXELS, Picture, Scene, Shape, Solid,
+    Camera, Lens, Light, LightPlace, MAX_KNOT_FACES, MAX_NAMED, MAX_PIXELS, Picture, Scene, Shape,
+    Solid,
 };
 
 /// Sine of the smallest angle between the view and `up`.
@@ -77,7 +78,12 @@ fn twice<'a>(list: &str, mut names: impl Iterator<Item = &'a String>) -> Option<
 }
 
 fn camera(camera: &Camera) -> Option<Flaw> {
-    let Camera { eye, target, up, lens: _ } = camera;
+    let Camera { eye, target, up, lens, aperture, focus: _, shutter: _ } = camera;
+    if matches!(lens, Lens::Parallel { .. }) && *aperture > 0.0 {
+        let message = "a parallel view has no lens: its `aperture` is 0";
+        let help = "leave `aperture` out, or write `fov_degrees` in place of `height`";
+        return Some(Flaw::new(&["camera", "aperture"], message, help));
+    }
     let Some(view) = unit(*target - *eye) else {
         let message = "`target` is where `eye` is: the camera looks nowhere";
         return Some(Flaw::new(&["camera", "target"], message, "move one of the two"));
@@ -108,6 +114,11 @@ fn light(light: &Light) -> Option<Flaw> {
 }
 
 fn solid(solid: &Solid) -> Option<Flaw> {
+    if matches!(solid.shape, Shape::Plane { .. }) && !solid.motion.is_none() {
+        let message = "a plane has no end and stands still";
+        let help = "leave `motion` out, or make it a box, which moves";
+        return Some(Flaw::new(&["solids", &solid.name, "motion"], message, help));
+    }
     let (key, message, help) = shape(&solid.shape)?;
     let path = ["solids", &solid.name, fields::shape_key(&solid.shape), key];
     Some(Flaw::new(&path, message, help))

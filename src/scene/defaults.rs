@@ -5,8 +5,10 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::Placement;
+use super::filter::Filter;
 use super::mesh::Mesh;
 use super::model::Model;
+use super::motion::Motion;
 use super::{
     Background, Camera, Lens, Light, LightPlace, Material, Paint, Picture, Scene, Shape, Solid,
     Trace,
@@ -41,6 +43,9 @@ impl Default for Camera {
             target: DVec3::ZERO,
             up: DVec3::Z,
             lens: Lens::Perspective { fov_degrees: 45.0 },
+            aperture: 0.0,
+            focus: 0.0,
+            shutter: 1.0,
         }
     }
 }
@@ -53,7 +58,7 @@ impl Default for Background {
 
 impl Default for Trace {
     fn default() -> Trace {
-        Trace { samples: 16, depth: 10, cutoff: 1.0 / 255.0 }
+        Trace { samples: 16, depth: 10, cutoff: 1.0 / 255.0, filter: Filter::Box }
     }
 }
 
@@ -97,7 +102,8 @@ impl Material {
 impl Solid {
     /// A shape where it was defined, in the material with this index.
     pub fn new(name: impl Into<String>, shape: Shape, material: usize) -> Solid {
-        Solid { name: name.into(), shape, material, placement: Placement::default() }
+        let (placement, motion) = (Placement::default(), Motion::default());
+        Solid { name: name.into(), shape, material, placement, motion }
     }
 }
 

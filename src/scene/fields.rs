@@ -1,5 +1,6 @@
 //! The fields of every part of a scene, listed once: names, ranges, and who may visit them.
 
+use super::motion::Motion;
 use super::range::Range;
 use super::slot::Slot;
 use super::{
@@ -21,6 +22,9 @@ pub const ROUGHNESS: Range = Range::closed(0.02, 1.0);
 pub const COORDINATE: Range = Range::closed(-1e12, 1e12);
 /// Radii, sides and scales.
 pub const LENGTH: Range = Range::above(0.0, 1e12);
+
+/// Lengths that may be nothing.
+pub const DISTANCE: Range = Range::closed(0.0, 1e12);
 
 /// The tables that hold named things.
 pub const LISTS: [&str; 3] = ["lights", "materials", "solids"];
@@ -94,7 +98,7 @@ pub fn scene(scene: &mut Scene, v: &mut dyn Visit) {
 
 /// Visits `[camera]`.
 pub fn camera(camera: &mut Camera, v: &mut dyn Visit) {
-    let Camera { eye, target, up, lens } = camera;
+    let Camera { eye, target, up, lens, aperture, focus, shutter } = camera;
     v.leaf("eye", Need::Optional, Slot::Vector(eye, COORDINATE));
     v.leaf("target", Need::Optional, Slot::Vector(target, COORDINATE));
     v.leaf("up", Need::Optional, Slot::Vector(up, COORDINATE));
@@ -105,6 +109,9 @@ pub fn camera(camera: &mut Camera, v: &mut dyn Visit) {
         }
         Lens::Parallel { height } => v.leaf("height", need, Slot::Number(height, LENGTH)),
     }
+    v.leaf("aperture", Need::Optional, Slot::Number(aperture, DISTANCE));
+    v.leaf("focus", Need::Optional, Slot::Number(focus, DISTANCE));
+    v.leaf("shutter", Need::Optional, Slot::Number(shutter, SHARE));
 }
 
 /// Visits `[picture]`.
@@ -117,10 +124,11 @@ pub fn picture(picture: &mut Picture, v: &mut dyn Visit) {
 
 /// Visits `[trace]`.
 pub fn trace(trace: &mut Trace, v: &mut dyn Visit) {
-    let Trace { samples, depth, cutoff } = trace;
+    let Trace { samples, depth, cutoff, filter } = trace;
     v.leaf("samples", Need::Optional, Slot::Whole(samples, Range::closed(1.0, 4096.0)));
     v.leaf("depth", Need::Optional, Slot::Whole(depth, DEPTH));
     v.leaf("cutoff", Need::Optional, Slot::Single(cutoff, SHARE));
+    v.leaf("filter", Need::Optional, Slot::Choice(filter));
 }
 
 /// Visits `[background]`.
@@ -196,11 +204,12 @@ pub fn paint(paint: &mut Paint, v: &mut dyn Visit) {
 
 /// Visits `[solids.NAME]`.
 pub fn solid(solid: &mut Solid, v: &mut dyn Visit) {
-    let Solid { name: _, shape, material, placement } = solid;
+    let Solid { name: _, shape, material, placement, motion } = solid;
     let key = shape_key(shape);
     v.group(key, Need::OneOf(SHAPES), &mut |v| self::shape(shape, v));
     v.leaf("material", Need::Required, Slot::Material(material));
     self::placement(placement, v);
+    v.group("motion", Need::Optional, &mut |v| self::motion(motion, v));
 }
 
 /// Visits the keys of a solid that place it.
@@ -209,6 +218,13 @@ pub fn placement(placement: &mut Placement, v: &mut dyn Visit) {
     v.leaf("rotate_degrees", Need::Optional, Slot::Vector(rotate_degrees, COORDINATE));
     v.leaf("translate", Need::Optional, Slot::Vector(translate, COORDINATE));
     v.leaf("scale", Need::Optional, Slot::Scale(scale, LENGTH));
+}
+
+/// Visits the motion of a solid.
+pub fn motion(motion: &mut Motion, v: &mut dyn Visit) {
+    let Motion { translate, rotate_degrees } = motion;
+    v.leaf("rotate_degrees", Need::Optional, Slot::Vector(rotate_degrees, COORDINATE));
+    v.leaf("translate", Need::Optional, Slot::Vector(translate, COORDINATE));
 }
 
 /// The key of a shape in its solid.

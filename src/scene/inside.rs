@@ -35,7 +35,7 @@ impl Scene {
         let known = self.solids.iter().filter(|solid| solid.material < self.materials.len());
         let [width, pixels] = self.picture.size.map(f64::from);
         let reach = match self.camera.lens {
-            Lens::Perspective { fov_degrees: _ } => 0.0,
+            Lens::Perspective { fov_degrees: _ } => self.camera.opening().map_or(0.0, |o| o.radius),
             // Parallel rays begin on a rectangle around the eye.
             Lens::Parallel { height } => height / 2.0 * (width / pixels).hypot(1.0),
         };
@@ -55,6 +55,10 @@ impl Solid {
     /// Whether a point, or one at most `reach` from it, may lie in the solid: `false` only if none
     /// does.
     fn may_contain(&self, point: DVec3, reach: f64) -> bool {
+        if self.moves() {
+            // It may come by.
+            return true;
+        }
         let Placement { translate, rotate_degrees, scale } = self.placement;
         let [x, y, z] = rotate_degrees.to_array().map(f64::to_radians);
         let turned =
@@ -89,6 +93,7 @@ impl Solid {
 mod tests {
     use super::*;
     use crate::color::Rgb;
+    use crate::scene::motion::Motion;
 
     fn scene(iors: [f64; 2], transmit: [f32; 2]) -> Scene {
         let mut scene = Scene::default();
@@ -103,6 +108,7 @@ mod tests {
                 shape: Shape::Sphere { center, radius: 1.0 },
                 material: i,
                 placement: Placement::default(),
+                motion: Motion::default(),
             });
         }
         scene
@@ -136,6 +142,7 @@ mod tests {
                 rotate_degrees: DVec3::new(0.0, 0.0, 90.0),
                 scale: DVec3::new(2.0, 1.0, 1.0),
             },
+            motion: Motion::default(),
         };
         let cube = solid(Shape::Box { min: DVec3::ZERO, max: DVec3::ONE });
         // x of the box, twice as long, points along y of the world, its y along −x.

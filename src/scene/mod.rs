@@ -11,9 +11,11 @@ mod direction;
 pub mod energy;
 pub mod factor;
 pub mod fields;
+pub mod filter;
 mod inside;
 pub mod mesh;
 pub mod model;
+pub mod motion;
 mod obj;
 pub mod path;
 pub mod problem;
@@ -30,8 +32,10 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::color::Rgb;
+use filter::Filter;
 use mesh::Mesh;
 use model::Model;
+use motion::Motion;
 
 /// A whole scene. Lengths are in one unit of the user's choice, colours linear Rec. 709.
 ///
@@ -86,6 +90,14 @@ pub struct Camera {
     pub up: DVec3,
     /// Perspective or parallel projection.
     pub lens: Lens,
+    /// Diameter of the perspective's lens, world units, ≥ 0. 0 is a pinhole, and so is a parallel
+    /// view.
+    pub aperture: f64,
+    /// Distance of the plane in focus from the eye's plane, along the view, world units, ≥ 0; 0
+    /// stands for that of `target`.
+    pub focus: f64,
+    /// Share of the solids' motion during which the shutter is open, from its beginning, 0 … 1.
+    pub shutter: f64,
 }
 
 /// How rays leave the eye.
@@ -119,6 +131,8 @@ pub struct Trace {
     pub depth: u32,
     /// A branch whose weight is below this is not followed, 0 … 1.
     pub cutoff: f32,
+    /// How a pixel weighs what is around its centre; heeded with several samples.
+    pub filter: Filter,
 }
 
 /// `[lights.NAME]`. A light that is off is traced all the same.
@@ -211,6 +225,8 @@ pub struct Solid {
     pub material: usize,
     /// world_from_object.
     pub placement: Placement,
+    /// How it moves on from there; a plane stands still.
+    pub motion: Motion,
 }
 
 /// Scale first, then rotation about x, y, z in this order, then translation.

@@ -231,7 +231,7 @@ mod tests {
         assert_eq!(found, expected);
         let found = refused("[camera]\n\"é\" = 1");
         let expected = "s.toml:3:1: unknown key `é` in `camera`\n  \"é\" = 1\n  ^^^\n  \
-                        help: known keys: eye, target, up, fov_degrees, height";
+                        help: known keys: eye, target, up, fov_degrees, height, aperture, focus, shutter";
         assert_eq!(found, expected);
         let found = read("").unwrap_err().to_string();
         let expected = "s.toml:1:1: the scene needs the key `version`\n  \n  ^\n  \
@@ -285,6 +285,12 @@ mod tests {
             ("camera.target = [0, -6, 2]", "`target` is where `eye` is: the camera looks nowhere"),
             ("camera = { eye = [0, 0, 9] }", "`up` is parallel to the view from `eye` to `target`"),
             ("camera.up = [0, 0, 0]", "`up` is zero, which is no direction"),
+            (
+                "camera = { height = 4, aperture = 0.1 }",
+                "a parallel view has no lens: its `aperture` is 0",
+            ),
+            ("camera.shutter = 1.5", "`shutter` is 1.5, out of its range: 0 to 1"),
+            ("trace.filter = \"boxx\"", "there is no filter `boxx`"),
             (
                 "picture.size = [65536, 65536]",
                 "a picture of 65536 × 65536 pixels is too large: at most 268435456 pixels",
@@ -362,6 +368,10 @@ mod tests {
             (
                 "sphereflake = { center = [0, 0, 0], radius = 1, levels = 7 }",
                 "`levels` is 7, out of its range: 1 to 6",
+            ),
+            (
+                "plane = { normal = [0, 0, 1], offset = 0 }\nmotion = { translate = [1, 0, 0] }",
+                "a plane has no end and stands still",
             ),
             ("mesh = { file = 3 }", "`file` must be the name of a file, found the whole number 3"),
         ] {

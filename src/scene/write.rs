@@ -160,6 +160,7 @@ mod tests {
 
     use super::*;
     use crate::color::Rgb;
+    use crate::scene::filter::Filter;
     use crate::scene::{Lens, LightPlace, Paint, read};
 
     /// Whether two scenes are the same to the last bit: `-0` is not `0`, unlike `==`.
@@ -181,6 +182,8 @@ mod tests {
         scene.trace.samples = 4096;
         scene.trace.depth = 0;
         scene.trace.cutoff = 1e-9;
+        scene.trace.filter = Filter::Mitchell;
+        (scene.camera.focus, scene.camera.shutter) = (0.1, 1.0 / 3.0);
         scene.lights = vec![
             Light { place: LightPlace::Direction(DVec3::NEG_Y), on: false, ..Light::new("b.a") },
             Light { color: Rgb([1.0, 0.9, 0.8]), ..Light::new("a") },
@@ -196,6 +199,9 @@ mod tests {
         for (index, key) in fields::SHAPES.iter().enumerate().filter(|(_, key)| **key != "mesh") {
             let mut solid = Solid::new(format!("solid {key}"), Shape::named(key), index % 3);
             solid.placement.translate.x = index as f64 * 0.1;
+            if *key != "plane" {
+                solid.motion.rotate_degrees.y = index as f64 * 7.7;
+            }
             solid.placement.scale = DVec3::new(1.0, 1.0, 1.0 + index as f64);
             scene.solids.push(solid);
         }

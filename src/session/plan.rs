@@ -297,7 +297,8 @@ fn find_terms(
     for (block, lanes) in lanes.iter_mut().enumerate() {
         let rows = transport.block(block);
         for (&entry, plane) in rows.entries.iter().zip(rows.planes) {
-            let set = |mask, i| mask | u16::from(plane.0[i] != 0.0) << i;
+            // −0 is a coefficient, too.
+            let set = |mask: u16, i: usize| mask | u16::from(plane.0[i].to_bits() != 0) << i;
             match local[entry as usize] {
                 Sought::Lanes if *lanes != u16::MAX => *lanes |= (0..LANES).fold(0, set),
                 Sought::Block => *lanes |= layout.lanes(tile, block),

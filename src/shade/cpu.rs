@@ -2,7 +2,8 @@
 //!
 //! A pixel is two sums, each from +0 in canonical order: its planes, then its single coefficients.
 //! Planes of terms that are zero are skipped: adding zero changes no bit of a sum that began at +0,
-//! because no coefficient in front of it is infinite and no partial sum is −0.
+//! because no coefficient in front of it is infinite and no partial sum is −0. A coefficient of −0
+//! adds nothing either.
 
 use fearless_simd::{Level, dispatch};
 use rayon::ThreadPool;

@@ -13,6 +13,7 @@ use super::inspector::{Known, Outcome, Selection, inspector_ui, paths};
 use super::keep::kept_text;
 use super::menu::{MenuState, menu_ui};
 use super::mixer::Mixer;
+use super::navigate::focused;
 use super::notice::Notices;
 use super::outline::{Lists, outline_ui};
 use super::picture::PictureView;
@@ -22,7 +23,7 @@ use super::style;
 use crate::document::recovery::Recovery;
 use crate::document::settings::Settings;
 use crate::document::{Document, flaw};
-use crate::scene::{Scene, path};
+use crate::scene::{Camera, Scene, path};
 use crate::session::live::{Event, Live, Shown};
 
 /// How long the wheel may rest within one gesture.
@@ -193,6 +194,7 @@ impl App {
             let state = MenuState {
                 document: &self.document,
                 camera_tool: self.picture.camera_tool,
+                focus_tool: self.picture.focus_tool,
                 handles: !self.handles.hidden,
                 mixer: self.mixer.open,
                 subject: self.subject(),
@@ -295,14 +297,38 @@ impl App {
         if outcome.pointer.is_some() {
             self.live.look_at(outcome.pointer);
         }
+        let mut focused = false;
         if let Some(point) = outcome.clicked {
-            self.pick(point, edited, ui.input(|i| i.modifiers.alt));
+            match self.picture.focus_tool {
+                true => focused = self.focus(point, &mut edited.camera),
+                false => self.pick(point, edited, ui.input(|i| i.modifiers.alt)),
+            }
         }
         if outcome.camera_moved && !ui.input(|i| i.pointer.any_down()) {
             self.wheel_until = Some(Instant::now() + WHEEL_REST);
             ui.ctx().request_repaint_after(WHEEL_REST);
         }
-        outcome.camera_moved || handled.changed
+        outcome.camera_moved || handled.changed || focused
+    }
+
+    /// Focuses on what is seen at a point of the picture, once; whether the camera was changed.
+    fn focus(&mut self, point: [f64; 2], camera: &mut Camera) -> bool {
+        match focused(camera, self.live.pick(point)) {
+            Ok(focus) => {
+                self.picture.focus_tool = false;
+                if camera.aperture == 0.0 {
+                    self.notices
+                        .say("focused; the lens is a pinhole until aperture is above 0".into());
+                }
+                let changed = camera.focus != focus;
+                camera.focus = focus;
+                changed
+            }
+            Err(why) => {
+                self.notices.error(why);
+                false
+            }
+        }
     }
 
     /// Selects what is seen at a point of the picture: its material, or itself.
@@ -360,6 +386,7 @@ impl App {
             Command::ZoomIn => self.picture.zoom_by(1.25, self.view, dots),
             Command::ZoomOut => self.picture.zoom_by(0.8, self.view, dots),
             Command::CameraTool => self.picture.camera_tool = !self.picture.camera_tool,
+            Command::FocusTool => self.picture.focus_tool = !self.picture.focus_tool,
             Command::Handles => self.handles.hidden = !self.handles.hidden,
             Command::Mixer => self.mixer.open = !self.mixer.open,
             Command::AddLight

@@ -150,7 +150,8 @@ mod tests {
     fn views() -> [View; 2] {
         [Lens::Perspective { fov_degrees: 50.0 }, Lens::Parallel { height: 7.0 }].map(|lens| {
             let eye = DVec3::new(3.0, -8.0, 5.0);
-            View::new(&Camera { eye, target: DVec3::new(-1.0, 0.5, 1.0), up: DVec3::Z, lens }, SIZE)
+            let target = DVec3::new(-1.0, 0.5, 1.0);
+            View::new(&Camera { eye, target, up: DVec3::Z, lens, ..Camera::default() }, SIZE)
         })
     }
 

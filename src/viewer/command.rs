@@ -47,6 +47,8 @@ pub(super) enum Command {
     ZoomOut,
     /// Whether dragging in the picture moves the camera.
     CameraTool,
+    /// Whether the next click in the picture focuses the camera.
+    FocusTool,
     /// Whether the lights have handles in the picture.
     Handles,
     /// Whether the light mixer shows.
@@ -84,6 +86,7 @@ impl Command {
             Command::ZoomIn => "Zoom in",
             Command::ZoomOut => "Zoom out",
             Command::CameraTool => "Move camera",
+            Command::FocusTool => "Focus by click",
             Command::Handles => "Light handles",
             Command::Mixer => "Light mixer",
             Command::Stop => "Stop",
@@ -119,6 +122,10 @@ impl Command {
             Command::CameraTool => {
                 "Drag orbits, Shift-drag pans, the wheel dollies; every move traces the picture anew"
             }
+            Command::FocusTool => {
+                "The next click in the picture puts what is there into focus; the camera's aperture \
+                 says how much the rest is blurred"
+            }
             Command::Handles => "Handles in the picture that move and turn the lights",
             Command::Mixer => "All lights side by side: on, solo, stops, colour, temperature",
             Command::Stop => "Stops what runs; the last whole picture stays",
@@ -140,6 +147,7 @@ impl Command {
             Command::Fit => keys(Modifiers::NONE, Key::F),
             Command::ActualSize => keys(Modifiers::NONE, Key::Num1),
             Command::CameraTool => keys(Modifiers::NONE, Key::C),
+            Command::FocusTool => keys(Modifiers::NONE, Key::D),
             Command::ZoomIn => keys(Modifiers::NONE, Key::Plus),
             Command::ZoomOut => keys(Modifiers::NONE, Key::Minus),
             Command::Stop => keys(Modifiers::NONE, Key::Escape),
@@ -160,7 +168,7 @@ impl Command {
 
     /// The commands with shortcuts. Those with more modifiers come first, so that Shift-Ctrl-Z is
     /// not taken for Ctrl-Z.
-    pub(super) const WITH_SHORTCUTS: [Command; 18] = [
+    pub(super) const WITH_SHORTCUTS: [Command; 19] = [
         Command::SaveAs,
         Command::Redo,
         Command::Open,
@@ -173,6 +181,7 @@ impl Command {
         Command::ZoomIn,
         Command::ZoomOut,
         Command::CameraTool,
+        Command::FocusTool,
         Command::Duplicate,
         Command::Rename,
         Command::Delete,

@@ -13,6 +13,14 @@ pub(super) fn about(key: &str) -> &'static str {
         "up" => "Which way is up in the picture",
         "fov_degrees" => "Vertical angle of view, in degrees",
         "height" => "Height of the view of a parallel camera, in units of the scene",
+        "aperture" => {
+            "Diameter of the lens, in units of the scene: 0 is a pinhole, which blurs nothing; needs \
+             several samples"
+        }
+        "focus" => {
+            "Distance in focus, along the view, in units of the scene; 0: that of the target"
+        }
+        "shutter" => "Share of the solids' motion that the picture sees; 0: it stands still",
         "size" => "Width and height in pixels; of a checker: side of a cube, in units of the scene",
         "exposure" => "Brightness of the picture in stops: +1 doubles it",
         "samples" => "Camera rays per pixel: more give smoother edges",
@@ -43,7 +51,10 @@ pub(super) fn about(key: &str) -> &'static str {
         "emission" => "Light that the surface gives off by itself",
         "reflect" => "Share of the mirror image",
         "transmit" => "Share of what is seen through the surface",
-        "filter" => "Colour that light takes on at every surface that it passes",
+        "filter" => {
+            "Colour that light takes on at every surface that it passes; of the trace: how a pixel \
+             weighs its surroundings"
+        }
         "ior" => "Index of refraction: air 1, water 1.33, glass 1.5, diamond 2.42",
         "a" => "Colour of the first kind of squares",
         "b" => "Colour of the second kind of squares",
@@ -59,8 +70,12 @@ pub(super) fn about(key: &str) -> &'static str {
         "tube" => "Radius of the tube; the knot's own radius is 1",
         "segments" => "Segments along and around the tube",
         "levels" => "Generations of spheres",
-        "rotate_degrees" => "Turns about x, then y, then z, in degrees",
-        "translate" => "Moves the solid, after scale and turn",
+        "rotate_degrees" => {
+            "Turns about x, then y, then z, in degrees; of a motion: how much farther it turns"
+        }
+        "translate" => {
+            "Moves the solid, after scale and turn; of a motion: how far it goes from there"
+        }
         "scale" => "Makes the solid larger or smaller, first of all",
         "file" => "The mesh file; it can be changed in the scene file",
         _ => "",
@@ -76,6 +91,10 @@ pub(super) fn choice(name: &str) -> &'static str {
         "hall" => {
             "Blinn's highlights weighted by Fresnel, lights shining through, Fresnel's mirror"
         }
+        "box" => "The pixel's own square, evenly: as sharp as its samples",
+        "tent" => "Nearer light counts more, up to the next pixel's centre: smooth",
+        "mitchell" => "Sharp and smooth; beside strong edges it may overshoot a little",
+        "gaussian" => "Very smooth, a little soft",
         _ => "",
     }
 }
@@ -114,6 +133,7 @@ pub(super) fn scale(key: &str, range: Range, value: f64) -> Scale {
 mod tests {
     use super::*;
     use crate::scene::fields::{LENSES, PLACES, SHAPES};
+    use crate::scene::filter::Filter;
     use crate::scene::model::Model;
     use crate::scene::path::parameters;
     use crate::scene::{Lens, Light, LightPlace, Material, Paint, Scene, Shape, Solid};
@@ -142,7 +162,7 @@ mod tests {
 
     #[test]
     fn every_choice_is_explained() {
-        for name in Model::NAMES {
+        for name in Model::NAMES.iter().chain(Filter::NAMES) {
             assert!(!choice(name).is_empty(), "{name}");
         }
         assert_eq!(choice("no such name"), "");

@@ -16,6 +16,8 @@ pub(super) struct MenuState<'a> {
     pub(super) document: &'a Document,
     /// Whether drags move the camera.
     pub(super) camera_tool: bool,
+    /// Whether a click focuses the camera.
+    pub(super) focus_tool: bool,
     /// Whether the lights have handles.
     pub(super) handles: bool,
     /// Whether the light mixer shows.
@@ -186,7 +188,11 @@ fn view_menu(
     }
     item(ui, Command::CameraTool, chosen);
     ui.separator();
-    for (command, on) in [(Command::Handles, state.handles), (Command::Mixer, state.mixer)] {
+    for (command, on) in [
+        (Command::FocusTool, state.focus_tool),
+        (Command::Handles, state.handles),
+        (Command::Mixer, state.mixer),
+    ] {
         let button = with_keys(ui, command, command.name()).selected(on);
         if ui.add(button).on_hover_text(command.about()).clicked() {
             *chosen = Some(command);

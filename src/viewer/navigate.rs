@@ -3,6 +3,7 @@
 use glam::{DQuat, DVec3};
 
 use crate::scene::{Camera, Lens};
+use crate::session::live::Picked;
 
 /// Smallest angle between the view and the camera's `up`, in radians.
 const STEEPEST: f64 = 0.02;
@@ -10,7 +11,7 @@ const STEEPEST: f64 = 0.02;
 /// Turns the eye around the target: `across` radians about `up`, then `over` radians towards `up`,
 /// stopping short of the poles.
 pub(super) fn orbit(camera: &mut Camera, across: f64, over: f64) {
-    let Camera { eye, target, up, lens: _ } = camera;
+    let Camera { eye, target, up, .. } = camera;
     let arm = *eye - *target;
     let axis = up.normalize();
     let angle = arm.angle_between(axis);
@@ -48,9 +49,30 @@ pub(super) fn dolly(camera: &mut Camera, factor: f64) {
     }
 }
 
+/// The focus of a camera on what was picked, in few decimal digits: it will stand in the scene file.
+/// After an error, why there is none.
+pub(super) fn focused(camera: &Camera, picked: Option<Picked>) -> Result<f64, String> {
+    if matches!(camera.lens, Lens::Parallel { .. }) {
+        return Err("a parallel view has no lens to focus".into());
+    }
+    let Some(Picked { solid: _, material: _, depth }) = picked else {
+        return Err("there is nothing to focus on: click on a solid".into());
+    };
+    Ok(format!("{depth:.4e}").parse().unwrap_or(depth))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_focus_is_where_something_is() {
+        let picked = Some(Picked { solid: 0, material: 0, depth: 7.123_456_789 });
+        assert_eq!(focused(&camera(), picked), Ok(7.1235));
+        assert!(focused(&camera(), None).is_err());
+        let parallel = Camera { lens: Lens::Parallel { height: 3.0 }, ..camera() };
+        assert!(focused(&parallel, picked).is_err());
+    }
 
     fn camera() -> Camera {
         Camera {
@@ -58,6 +80,7 @@ mod tests {
             target: DVec3::ZERO,
             up: DVec3::Z,
             lens: Lens::Perspective { fov_degrees: 90.0 },
+            ..Camera::default()
         }
     }
 

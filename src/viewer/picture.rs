@@ -43,6 +43,8 @@ pub(super) struct PictureView {
     frame_size: [u32; 2],
     /// Whether drags move the camera.
     pub(super) camera_tool: bool,
+    /// Whether a click focuses the camera.
+    pub(super) focus_tool: bool,
 }
 
 /// What the person did in the picture.
@@ -66,6 +68,7 @@ impl PictureView {
             pieces: Vec::new(),
             frame_size: [0, 0],
             camera_tool: false,
+            focus_tool: false,
         }
     }
 
@@ -152,6 +155,7 @@ impl PictureView {
         self.paint(ui, view, place);
         let cursor = match (self.camera_tool, response.dragged()) {
             (true, _) => CursorIcon::Move,
+            (false, false) if self.focus_tool => CursorIcon::Cell,
             (false, true) => CursorIcon::Grabbing,
             (false, false) => CursorIcon::Crosshair,
         };

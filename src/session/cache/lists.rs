@@ -15,8 +15,9 @@ pub(super) fn check(lists: &Highlights, tile: &TransportTile, trie: &Trie) -> Re
     for part in lists.parts() {
         check_part(&part, tile, trie)?;
     }
-    let sound = |weights: &[f32]| weights.iter().fold(true, |all, w| all & (*w >= 0.0 && *w < INF));
-    ensure(lists.weights.chunks(LANES).all(sound), "a weight is not finite, or below 0")
+    // A filter's weights may be below 0.
+    let sound = |weights: &[f32]| weights.iter().fold(true, |all, w| all & w.is_finite());
+    ensure(lists.weights.chunks(LANES).all(sound), "a weight is not finite")
 }
 
 const INF: f32 = f32::INFINITY;
@@ -218,9 +219,8 @@ mod tests {
             ("a list has another peak", |l| l.lists.logarithms[9] = -INF),
             ("a cosine above 1", |l| l.lists.lists[0].peak = 0.1),
             ("a cosine above 1", |l| l.lists.lists[0].peak = f32::NAN),
-            ("a weight is not finite, or below 0", |l| l.lists.weights[9] = -0.5),
-            ("a weight is not finite, or below 0", |l| l.lists.weights[9] = INF),
-            ("a weight is not finite, or below 0", |l| l.lists.weights[9] = f32::NAN),
+            ("a weight is not finite", |l| l.lists.weights[9] = INF),
+            ("a weight is not finite", |l| l.lists.weights[9] = f32::NAN),
         ]);
     }
 

@@ -65,13 +65,18 @@ impl Eye {
         if !((0.0..width).contains(&x) && (0.0..height).contains(&y)) {
             return None;
         }
-        let ray = View::new(&self.scene.camera, size).ray(x, y);
+        let view = View::new(&self.scene.camera, size);
+        let ray = view.ray(x, y);
         let mut stack = Stack::new(&self.geometry);
+        // What moves is picked where it is half way.
+        stack.set_time(self.scene.shutter_time().unwrap_or_default() / 2.0);
         let hit = dispatch!(Level::new(), simd => {
             self.geometry.closest_hit(simd, &mut stack, &ray, None)
         })?;
         let solid = self.geometry.solid(hit.primitive) as usize;
-        Some(Picked { solid, material: self.scene.solids[solid].material })
+        let [_, _, forward] = view.axes();
+        let depth = hit.t * ray.direction.dot(forward);
+        Some(Picked { solid, material: self.scene.solids[solid].material, depth })
     }
 }
 

@@ -119,6 +119,8 @@ pub struct Picked {
     pub solid: usize,
     /// Index of the material.
     pub material: usize,
+    /// Distance of the point met from the eye's plane, along the view, world units.
+    pub depth: f64,
 }
 
 /// A session that runs in threads of its own. All calls return at once.

@@ -401,8 +401,9 @@ fn a_point_of_the_picture_tells_its_solid_and_material() {
     let scene = scene("whitted", [64, 40], 1);
     let window = Window::showing(&scene);
     let name = |point| {
-        let Picked { solid, material } = window.live.pick(point)?;
+        let Picked { solid, material, depth } = window.live.pick(point)?;
         assert_eq!(material, scene.solids[solid].material);
+        assert!((1.0..30.0).contains(&depth), "{depth}");
         Some(scene.solids[solid].name.as_str())
     };
     assert_eq!(name([32.0, 39.5]), Some("floor"));

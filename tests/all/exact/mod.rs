@@ -42,7 +42,8 @@ fn scenes() -> PathBuf {
 }
 
 /// The shipped scenes by the stem of their file.
-const SHIPPED: [&str; 7] = ["whitted", "plain", "glass", "gems", "flake", "mesh", "mirrors"];
+const SHIPPED: [&str; 8] =
+    ["whitted", "plain", "glass", "gems", "flake", "mesh", "mirrors", "motion"];
 
 /// A shipped scene as a small picture; the knot with fewer triangles, the flake with fewer spheres.
 fn shipped(name: &str, size: [u32; 2], samples: u32) -> Scene {

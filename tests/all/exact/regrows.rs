@@ -9,6 +9,7 @@ use rayforest::forest::kept::{KeptStart, KeptTrees};
 use rayforest::forest::tree::{Branch, Reader};
 use rayforest::progress::Progress;
 use rayforest::scene::change::Change;
+use rayforest::scene::factor::Kind;
 use rayforest::scene::{Light, LightPlace, Material, Paint, Scene, read, write};
 use rayforest::session::cache;
 use rayforest::session::plan::Plan;
@@ -295,6 +296,63 @@ fn plain() {
 #[test]
 fn mirrors() {
     wander("mirrors", &small("mirrors"), None);
+}
+
+/// With an open lens, moving solids and a filter whose weights have signs.
+#[test]
+fn motion() {
+    let mut scene = small("motion");
+    set(&mut scene, "trace.samples", "6");
+    wander("motion", &scene, None);
+}
+
+/// What samples of opposite signs cancel is there all the same: every pixel that shows a material is
+/// named when its surfaces are read again.
+#[test]
+fn pixels_whose_samples_cancel_are_named() {
+    let mut scene = small("motion");
+    set(&mut scene, "picture.size", "[120, 90]");
+    set(&mut scene, "trace.samples", "4");
+    let mut session = open(&scene, 2);
+    let blue = scene.materials.iter().position(|m| m.name == "blue").unwrap() as u16;
+    let trie = &session.transport().trie;
+    let ambient = |id: u32| {
+        let factor = trie.nodes()[id as usize].factor;
+        factor.kind() == Kind::Ambient && factor.index() == usize::from(blue)
+    };
+    let minus = |c: f32| c.to_bits() == (-0.0f32).to_bits();
+    let mut cancelled = 0;
+    for tile in &session.transport().tiles {
+        let planes = tile.entries.iter().zip(&tile.planes);
+        let planes = planes.filter(|(entry, _)| ambient(tile.terms[**entry as usize]));
+        cancelled += planes.flat_map(|(_, plane)| plane.0).filter(|c| minus(*c)).count();
+        let singles = tile.singles.iter().filter(|s| ambient(tile.terms[s.entry()]));
+        cancelled += singles.filter(|single| minus(single.coefficient)).count();
+    }
+    assert!(cancelled > 0, "some samples cancel");
+    set(&mut scene, "materials.blue.texture.checker.size", "0.5");
+    let plan = plan(&mut session, &scene).unwrap();
+    let layout = session.transport().layout;
+    let mut shown = 0;
+    for tile in 0..layout.tiles() {
+        let trees = session.trees(tile, &Progress::default()).unwrap();
+        let lanes = plan.tiles.iter().find(|t| t.tile == tile).map(|t| t.lanes.clone());
+        let mut reader = trees.read(0);
+        for block in 0..TILE_BLOCKS {
+            let pixel = |lane: &usize| layout.pixel(Place { tile, block, lane: *lane }).is_some();
+            for lane in (0..LANES).filter(pixel) {
+                let nodes: Vec<_> = (0..4).flat_map(|_| nodes_of(&mut reader)).collect();
+                let solid = |primitive| session.geometry().solid(primitive) as usize;
+                let shows = nodes
+                    .iter()
+                    .any(|(p, _)| scene.solids[solid(*p)].material == usize::from(blue));
+                let named = lanes.as_ref().is_some_and(|lanes| lanes[block] >> lane & 1 != 0);
+                assert!(named || !shows, "tile {tile} block {block} lane {lane}");
+                shown += u32::from(shows);
+            }
+        }
+    }
+    assert!(shown > 100, "{shown}");
 }
 
 #[test]

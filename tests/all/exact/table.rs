@@ -83,6 +83,16 @@ pub(super) const MODELS: [(&str, &str); 7] = [
     ("materials.brass.fresnel", "true"),
 ];
 
+/// What of [`SCENE`] is an open lens, a moving solid and a filter with signs, for [`LENS`].
+pub(super) const OPEN: [(&str, &str); 6] = [
+    ("camera.aperture", "0.4"),
+    ("camera.focus", "6.5"),
+    ("camera.shutter", "0.8"),
+    ("trace.filter", "mitchell"),
+    ("trace.samples", "5"),
+    ("solids.ball.motion.translate", "[0.5, 0, 0.2]"),
+];
+
 /// A parameter and what some values of it, set one after another, cost. `*` stands for any name,
 /// `@` for the value it had at first. A value that it has already costs nothing and stands for
 /// `Class::None`.
@@ -149,6 +159,12 @@ pub(super) const ROWS: &[Row] = &[
     row("camera.target", VECTOR),
     row("camera.up", &[("[0.1, 0, 1]", Retrace), ("@", Retrace)]),
     row("camera.fov_degrees", &[("50", Retrace), ("1", Retrace), ("@", Retrace)]),
+    // A parallel view has no lens.
+    row("camera.aperture", &[("0.3", Retrace), ("1.2", Retrace), ("0", Retrace), ("@", Nothing)]),
+    // Neither has a pinhole.
+    row("camera.focus", &[("5", Nothing), ("@", Nothing)]),
+    // Nothing moves.
+    row("camera.shutter", &[("0.5", Nothing), ("0", Nothing), ("@", Nothing)]),
     row("camera.height", &[("5", Retrace), ("0.5", Retrace), ("@", Retrace)]),
     row("picture.size", &[("[33, 20]", Retrace), ("[1, 1]", Retrace), ("@", Retrace)]),
     row(
@@ -156,6 +172,16 @@ pub(super) const ROWS: &[Row] = &[
         &[("0", Reshade), ("-30", Reshade), ("1", Reshade), ("30", Reshade), ("@", Reshade)],
     ),
     row("trace.samples", &[("1", Retrace), ("3", Retrace), ("@", Retrace)]),
+    row(
+        "trace.filter",
+        &[
+            ("tent", Retrace),
+            ("mitchell", Retrace),
+            ("gaussian", Retrace),
+            ("box", Retrace),
+            ("@", Nothing),
+        ],
+    ),
     row(
         "trace.depth",
         &[
@@ -290,6 +316,11 @@ pub(super) const ROWS: &[Row] = &[
     row("solids.floor.material", &[("plain", Refold), ("glass", Regrow), ("@", Regrow)]),
     row("solids.screen.material", &[("plain", Refold), ("glass", Regrow), ("@", Regrow)]),
     row("solids.*.material", &[("plain", Regrow), ("glass", Regrow), ("@", Regrow)]),
+    // A plane stands still: it is refused.
+    row("solids.floor.motion.translate", &[]),
+    row("solids.floor.motion.rotate_degrees", &[]),
+    row("solids.*.motion.translate", VECTOR),
+    row("solids.*.motion.rotate_degrees", TURN),
     row("solids.*.translate", VECTOR),
     row("solids.*.rotate_degrees", TURN),
     row("solids.*.scale", SCALE),
@@ -341,4 +372,35 @@ pub(super) const GLOSSY: &[Row] = &[
         "materials.lamp.transmit",
         &[("0.004", Regrow), ("0", Reshade), ("0.004", Reshade), ("@", Reshade)],
     ),
+];
+
+/// Parameters of [`SCENE`] with [`OPEN`]: those of lens, shutter and filter, and some of all classes,
+/// whose samples now have places, times and signs of their own.
+pub(super) const LENS: &[Row] = &[
+    row("camera.aperture", &[("0.2", Retrace), ("0", Retrace), ("@", Retrace)]),
+    row("camera.focus", &[("4", Retrace), ("0", Retrace), ("@", Retrace)]),
+    row("camera.shutter", &[("0.4", Retrace), ("0", Retrace), ("1", Retrace), ("@", Retrace)]),
+    row("trace.filter", &[("gaussian", Retrace), ("box", Retrace), ("@", Retrace)]),
+    row("trace.samples", &[("1", Retrace), ("4", Retrace), ("@", Retrace)]),
+    row("solids.ball.motion.translate", VECTOR),
+    row("solids.ring.motion.rotate_degrees", TURN),
+    row("solids.ball.motion.rotate_degrees", TURN),
+    row("solids.ball.translate", VECTOR),
+    row("materials.tiles.texture.checker.a", COLOR),
+    row("materials.tiles.texture.checker.size", CELL),
+    row("materials.plain.diffuse", COLOR),
+    row("materials.mirror.shininess", EXPONENT),
+    row("materials.glass.shininess", EXPONENT),
+    row("materials.glass.fresnel", &[("true", Refold), ("@", Regrow)]),
+    row("materials.glass.ior", &[("1", Regrow), ("2.4", Regrow), ("@", Regrow)]),
+    row(
+        "materials.mirror.reflect",
+        &[("0.2", Reshade), ("0", Reshade), ("@", Reshade), ("1", Regrow)],
+    ),
+    row("materials.plain.reflect", BECOMES_MIRROR),
+    row("materials.tiles.reflect", BECOMES_MIRROR),
+    row("lights.key.point", &[("[-4, -5, 7.5]", Regrow), ("@", Regrow)]),
+    row("lights.sun.on", &[("false", Reshade), ("true", Reshade)]),
+    row("solids.ball.material", &[("plain", Regrow), ("glass", Regrow), ("@", Regrow)]),
+    row("trace.depth", &[("2", Reshade), ("@", Reshade), ("5", Regrow), ("@", Reshade)]),
 ];

@@ -29,6 +29,8 @@ fn allowed(value: f64) -> f64 {
 /// The picture, and what the rule of liveness did.
 struct Evaluated {
     picture: Picture,
+    /// The same with all weights as if they were positive: what rounding is relative to.
+    sizes: Picture,
     /// Branches that are stored and dead under the present scene.
     dead: usize,
     /// How close a weight came to the cut-off, as a ratio minus 1: f32 and f64 decide alike only
@@ -44,14 +46,21 @@ fn evaluate(trees: &[PixelTrees], scene: &Scene) -> Evaluated {
     let [width, height] = scene.picture.size;
     let mut picture =
         Picture { size: [width, height], pixels: vec![[f64::NAN; 3]; (width * height) as usize] };
+    let mut sizes = picture.clone();
     for pixel in trees {
-        let sum: DVec3 = pixel.samples.iter().map(|tree| evaluator.sample(tree.as_ref())).sum();
+        let (mut sum, mut size) = (DVec3::ZERO, DVec3::ZERO);
+        for (tree, weight) in pixel.samples.iter().zip(&pixel.weights) {
+            let light = evaluator.sample(tree.as_ref());
+            (sum, size) = (sum + *weight * light, size + weight.abs() * light);
+        }
         let [x, y] = pixel.pixel;
-        let mean = sum / f64::from(scene.trace.samples);
-        picture.pixels[(y * width + x) as usize] = mean.to_array();
+        let at = (y * width + x) as usize;
+        let count = f64::from(scene.trace.samples);
+        picture.pixels[at] = (sum / count).to_array();
+        sizes.pixels[at] = (size / count).to_array();
     }
     let Evaluator { scene: _, dead, margin, missing } = evaluator;
-    Evaluated { picture, dead, margin, missing }
+    Evaluated { picture, sizes, dead, margin, missing }
 }
 
 struct Evaluator<'a> {
@@ -179,7 +188,13 @@ fn judge(ours: &Picture, truth: &Evaluated) -> Result<(), String> {
     if truth.margin < 1e-5 {
         return Err(format!("a weight is within {:e} of the cut-off", truth.margin));
     }
-    let comparison = ours.compare(&truth.picture, allowed);
+    // Where weights have signs, sums are rounded as those of all that is added and taken away.
+    let pixels = ours.pixels.iter().zip(&truth.picture.pixels).zip(&truth.sizes.pixels);
+    let off = |((a, b), size): ((&[f64; 3], &[f64; 3]), &[f64; 3])| -> [f64; 3] {
+        std::array::from_fn(|i| size[i] + (a[i] - b[i]))
+    };
+    let ours = Picture { size: ours.size, pixels: pixels.map(off).collect() };
+    let comparison = ours.compare(&truth.sizes, allowed);
     let (units, [x, y]) = comparison.worst;
     match comparison.share {
         0.0 => Ok(()),
@@ -232,7 +247,7 @@ fn new_value(
         }
         "emission" => triple(0.2),
         "intensity" => triple(1.5),
-        "reflect" | "transmit" | "filter" => match dice.roll() {
+        "reflect" | "transmit" | "filter" if original.range.is_some() => match dice.roll() {
             r if r < 0.1 => "0".to_owned(),
             _ => scaled(value, &[0; 3].map(|_| reach * dice.roll())),
         },

@@ -30,9 +30,11 @@ fn scenes() -> [(&'static str, Scene); 3] {
 /// The scene with every length multiplied by `by`.
 fn scaled(scene: &Scene, by: f64) -> Scene {
     let mut scene = scene.clone();
-    let Camera { eye, target, up: _, lens } = &mut scene.camera;
+    let Camera { eye, target, up: _, lens, aperture, focus, shutter: _ } = &mut scene.camera;
     *eye *= by;
     *target *= by;
+    *aperture *= by;
+    *focus *= by;
     if let Lens::Parallel { height } = lens {
         *height *= by;
     }
@@ -45,6 +47,7 @@ fn scaled(scene: &Scene, by: f64) -> Scene {
     for solid in &mut scene.solids {
         let Placement { translate, rotate_degrees: _, scale } = &mut solid.placement;
         *translate *= by;
+        solid.motion.translate *= by;
         match &mut solid.shape {
             Shape::Sphere { center, radius } | Shape::Sphereflake { center, radius, levels: _ } => {
                 *center *= by;

@@ -4,6 +4,7 @@
 mod evaluator;
 mod golden;
 mod image_scale;
+mod lens;
 mod physics;
 mod picture;
 mod povray;

@@ -22,8 +22,8 @@ fn one_ray(eye: DVec3, direction: DVec3) -> Scene {
     let lens = Lens::Parallel { height: 1.0 };
     Scene {
         picture: Picture { size: [1, 1], exposure: 0.0 },
-        camera: Camera { eye, target: eye + direction, up, lens },
-        trace: Trace { samples: 1, depth: 64, cutoff: 0.0 },
+        camera: Camera { eye, target: eye + direction, up, lens, ..Camera::default() },
+        trace: Trace { samples: 1, depth: 64, cutoff: 0.0, ..Trace::default() },
         ..Scene::default()
     }
 }

@@ -45,6 +45,8 @@ pub(super) enum Limb {
 pub(super) struct PixelTrees {
     pub(super) pixel: [u32; 2],
     pub(super) samples: Vec<Option<Tree>>,
+    /// What each counts; their mean is 1.
+    pub(super) weights: Vec<f64>,
 }
 
 /// The trees of every pixel of a session.
@@ -61,8 +63,9 @@ pub(super) fn pixels(session: &Session) -> Vec<PixelTrees> {
         for block in 0..TILE_BLOCKS {
             for lane in 0..LANES {
                 if let Some(pixel) = layout.pixel(Place { tile, block, lane }) {
+                    let weights = (0..samples as usize).map(|i| cursor.weight(i)).collect();
                     let samples = (0..samples).map(|_| cursor.sample()).collect();
-                    list.push(PixelTrees { pixel, samples });
+                    list.push(PixelTrees { pixel, samples, weights });
                 }
             }
         }
@@ -82,6 +85,11 @@ struct Cursor<'a> {
 }
 
 impl Cursor<'_> {
+    /// The weight of the sample that comes so many later.
+    fn weight(&self, later: usize) -> f64 {
+        self.trees.weights.get(self.sample + later).map_or(1.0, |weight| f64::from(*weight))
+    }
+
     fn sample(&mut self) -> Option<Tree> {
         self.sample += 1;
         self.trees.hits[self.sample - 1].then(|| self.tree())
@@ -136,9 +144,10 @@ impl Cursor<'_> {
     }
 
     fn assert_at_end(&self) {
-        let TileTrees { blocks: _, hits, nodes, lights, crossings } = self.trees;
+        let TileTrees { blocks: _, hits, weights, nodes, lights, crossings } = self.trees;
         let at = [self.sample, self.node, self.light, self.crossing];
         let end = [hits.len(), nodes.len(), lights.len(), crossings.len()];
+        assert!(weights.is_empty() || weights.len() == hits.len(), "weights of all samples");
         assert_eq!(at, end, "samples, nodes, lights and crossings read, and how many there are");
     }
 }

@@ -122,6 +122,27 @@ fn a_stop_keeps_the_old_picture_whole_until_it_is_traced() {
 }
 
 #[test]
+fn a_click_focuses_the_camera_once() {
+    let mut window = Window::with_scene(SCENE, Vec::new());
+    let before = window.picture();
+    let middle = window.rect(Role::Image, "picture").center();
+    window.key(Modifiers::NONE, Key::D);
+    window.click_at(middle, Modifiers::NONE);
+    let camera = window.app().document().scene().camera.clone();
+    let target = camera.eye.distance(camera.target);
+    assert!((0.5 * target..1.5 * target).contains(&camera.focus), "{}", camera.focus);
+    let step = window.undo_name().expect("one step").to_owned();
+    assert!(step.starts_with("focus"), "{step}");
+    window.until_exact();
+    assert!(window.picture() == before, "a pinhole has no focus");
+    window.click_at(middle + vec2(3.0, 0.0), Modifiers::NONE);
+    assert_eq!(window.app().document().scene().camera, camera, "the next click only selects");
+    window.click("Undo");
+    assert_eq!(window.undo_name(), None);
+    assert_eq!(window.app().document().scene().camera.focus, 0.0);
+}
+
+#[test]
 fn without_the_tool_a_drag_moves_no_camera() {
     let mut window = Window::with_scene(SCENE, Vec::new());
     window.orbit();

@@ -333,7 +333,7 @@ fn a_ball_never_reflects_totally_what_entered_it() {
     let glass = Material { reflect: Rgb::grey(0.3), transmit: Rgb::grey(0.7), ..clear(N) };
     scene.materials = vec![glass];
     scene.solids = vec![solid(sphere(DVec3::ZERO, 1.3), 0)];
-    scene.trace = Trace { samples: 4, depth: 12, cutoff: 0.0 };
+    scene.trace = Trace { samples: 4, depth: 12, cutoff: 0.0, ..Trace::default() };
     let inside = |solids: Vec<Solid>| {
         let session = open(Scene { solids, ..scene.clone() });
         let (mut nodes, mut total) = (0, 0);
