@@ -4,6 +4,7 @@ mod cached;
 mod demo;
 mod inspect;
 mod render;
+mod tiles;
 mod watch;
 
 use std::fmt;
@@ -36,6 +37,8 @@ pub struct Arguments {
 enum Mode {
     /// Trace a scene, edit it, write the picture
     Render(render::Render),
+    /// Put a picture together from the parts that `render --tile` traced
+    Merge(tiles::Merge),
     /// Measure tracing, folding and re-shading
     Bench(Bench),
     /// Show a pixel's ray tree, its terms and their shares
@@ -117,6 +120,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     match arguments.mode {
         None => window(arguments.scene),
         Some(Mode::Render(render)) => render.run(),
+        Some(Mode::Merge(merge)) => merge.run(),
         Some(Mode::Inspect(inspect)) => inspect.run(),
         Some(Mode::Check(check)) => check.run(),
         Some(Mode::Bench(bench)) => bench.run(),

@@ -6,6 +6,7 @@ mod command_line;
 #[cfg(target_os = "linux")]
 mod display;
 mod killed;
+mod parts;
 mod window;
 
 use std::path::Path;
