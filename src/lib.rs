@@ -88,6 +88,8 @@ pub mod shade;
 pub mod session;
 // the work of a person: files, history, recovery
 pub mod document;
+// measurements
+pub mod chart;
 // faces
 pub mod bench;
 pub mod viewer;

@@ -152,7 +152,8 @@ impl Render {
     }
 }
 
-fn split<'a>(assignment: &'a str, option: &str) -> Result<(&'a str, &'a str), Failure> {
+/// Path and value of an assignment; the failure names the option that it came with.
+pub(crate) fn split<'a>(assignment: &'a str, option: &str) -> Result<(&'a str, &'a str), Failure> {
     assignment.split_once('=').map(|(p, v)| (p.trim(), v.trim())).ok_or_else(|| {
         Failure::input(format!("{option}: `{assignment}` is not of the form PATH=VALUE"))
     })

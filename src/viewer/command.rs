@@ -51,6 +51,8 @@ pub(super) enum Command {
     Handles,
     /// Whether the light mixer shows.
     Mixer,
+    /// Whether the chart of speed against accuracy shows.
+    Chart,
     /// Stops the running trace, export or keeping.
     Stop,
     /// Traces what a stop left out.
@@ -86,6 +88,7 @@ impl Command {
             Command::CameraTool => "Move camera",
             Command::Handles => "Light handles",
             Command::Mixer => "Light mixer",
+            Command::Chart => "Speed and accuracy",
             Command::Stop => "Stop",
             Command::Resume => "Trace now",
         }
@@ -121,6 +124,9 @@ impl Command {
             }
             Command::Handles => "Handles in the picture that move and turn the lights",
             Command::Mixer => "All lights side by side: on, solo, stops, colour, temperature",
+            Command::Chart => {
+                "Measures samples, depth and cut-off of this scene, and recommends settings"
+            }
             Command::Stop => "Stops what runs; the last whole picture stays",
             Command::Resume => "Traces the picture that was stopped",
         }
@@ -154,6 +160,7 @@ impl Command {
             | Command::AddLight
             | Command::AddMaterial
             | Command::Assign
+            | Command::Chart
             | Command::Resume => None,
         }
     }

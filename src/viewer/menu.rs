@@ -20,6 +20,8 @@ pub(super) struct MenuState<'a> {
     pub(super) handles: bool,
     /// Whether the light mixer shows.
     pub(super) mixer: bool,
+    /// Whether the chart of speed against accuracy shows.
+    pub(super) chart: bool,
     /// What commands about lights and materials are about.
     pub(super) subject: Subject,
     /// Whether what was traced can be kept.
@@ -186,7 +188,8 @@ fn view_menu(
     }
     item(ui, Command::CameraTool, chosen);
     ui.separator();
-    for (command, on) in [(Command::Handles, state.handles), (Command::Mixer, state.mixer)] {
+    let (handles, mixer) = ((Command::Handles, state.handles), (Command::Mixer, state.mixer));
+    for (command, on) in [handles, mixer, (Command::Chart, state.chart)] {
         let button = with_keys(ui, command, command.name()).selected(on);
         if ui.add(button).on_hover_text(command.about()).clicked() {
             *chosen = Some(command);

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod cache;
+mod chart;
 mod command_line;
 #[cfg(target_os = "linux")]
 mod display;
