@@ -6,7 +6,7 @@ use std::sync::Arc;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb};
 
-use super::{Chart, Cost, Deviation, Goal, Point, Sweep, text_of};
+use super::{Chart, Cost, Deviation, Goal, Point, Sweep, TIME, text_of};
 
 /// Size of the picture in its own units, and of the PNG in pixels per unit.
 const SIZE: [f64; 2] = [960.0, 680.0];
@@ -167,7 +167,7 @@ fn frame(out: &mut String, [time, error]: &[Axis; 2]) {
             bottom - top
         ),
     );
-    text(out, [(left + right) / 2.0, bottom + 38.0], "middle", "seconds");
+    text(out, [(left + right) / 2.0, bottom + 38.0], "middle", TIME);
     let middle = (top + bottom) / 2.0;
     put(
         out,
@@ -190,7 +190,7 @@ fn head(out: &mut String, name: &str, chart: &Chart) {
     );
     let about = format!(
         "{width}×{height}. Error: over all pixels and the three channels, after exposure, 1 = white. \
-         Time: wall seconds of tracing, {threads} threads."
+         Time: {TIME} of tracing, {threads} threads."
     );
     text(out, [84.0, 48.0], "start", &about);
     let filled = format!("Filled: error {goal}. Lines join what nothing beats in both.");
@@ -269,8 +269,13 @@ fn swept(out: &mut String, chart: &Chart, sweep: &Sweep, color: &str, [time, err
         let about = about(&format!("{} = {value}", sweep.setting.path), point.cost, point.error);
         let [x, y] = place(point);
         circle(out, [x, y], color, chart.goal.is_met(point.error), &about);
-        text(out, [x + 6.0, y - 6.0], "start", &value);
+        text(out, [x + 6.0, y - 6.0], "start", &short(point.value));
     }
+}
+
+/// A value in three digits.
+fn short(value: f64) -> String {
+    format!("{value:.2e}").parse().map_or_else(|_| text_of(value), text_of)
 }
 
 /// A point in words.

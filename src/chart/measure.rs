@@ -174,8 +174,30 @@ impl Tracer<'_> {
     fn film(&self, scene: &Scene) -> Result<(Film, Cost), TraceError> {
         let Tracer { scene: _, geometry, pool, memory, progress } = self;
         let still = Still { scene, geometry, pool, memory: *memory };
+        let before = processor_seconds(pool);
         let (film, report) = still.film(progress)?;
-        Ok((film, Cost { seconds: report.seconds, runs: 1, rays: report.rays.total() }))
+        let seconds = match (before, processor_seconds(pool)) {
+            (Some(before), Some(after)) => after - before,
+            _ => report.seconds,
+        };
+        Ok((film, Cost { seconds, runs: 1, rays: report.rays.total() }))
+    }
+}
+
+/// Processor time that the threads of a pool have taken so far, where the platform tells.
+fn processor_seconds(pool: &ThreadPool) -> Option<f64> {
+    #[cfg(unix)]
+    {
+        let times = pool.broadcast(|_| {
+            let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+            time.tv_sec as f64 + time.tv_nsec as f64 / 1e9
+        });
+        Some(times.into_iter().sum())
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = pool;
+        None
     }
 }
 

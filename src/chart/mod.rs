@@ -146,10 +146,13 @@ impl fmt::Display for Goal {
     }
 }
 
+/// What is measured as time: what else the machine does changes processor time little.
+pub const TIME: &str = if cfg!(unix) { "processor seconds" } else { "wall seconds" };
+
 /// What tracing took.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
-    /// Wall time of tracing and folding, without keeping trees: the median of `runs`.
+    /// [`TIME`] of tracing, folding and shading, without keeping trees: the median of `runs`.
     pub seconds: f64,
     /// How often it was measured.
     pub runs: usize,

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Chart, Cost, Deviation, Goal, Point, Sweep, text_of};
+use super::{Chart, Cost, Deviation, Goal, Point, Sweep, TIME, text_of};
 
 /// One line per point, and one each for the scene as it is and for what is recommended.
 pub fn csv(chart: &Chart) -> String {
@@ -46,7 +46,7 @@ pub fn json(name: &str, chart: &Chart) -> Value {
         "threads": threads,
         "reference_samples": reference,
         "error": "rms over pixels and channels after exposure, against the truth of each setting",
-        "time": "wall seconds of tracing and folding, median of the runs",
+        "time": format!("{TIME} of tracing on all threads, median of the runs"),
         "goal": goal,
         "present": { "cost": cost(present), "error_at_most_about": present_error.map(error) },
         "settings": sweeps.iter().map(|s| swept(s, chart.goal)).collect::<Vec<_>>(),

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::watch::watched;
 use super::{Common, Failure, print, read_scene, say, set};
-use crate::chart::{Chart, Cost, Goal, News, Wishes, csv, json, measure, png, svg};
+use crate::chart::{Chart, Cost, Goal, News, TIME, Wishes, csv, json, measure, png, svg};
 use crate::film::write::{atomically, check_writable};
 
 /// What to measure.
@@ -84,7 +84,11 @@ fn summary(chart: &Chart) -> Vec<String> {
         let error = error.map_or_else(String::new, |e| {
             format!(", error at most about {:.2e} rms ({:.2} code values)", e.linear, e.codes)
         });
-        format!("{what}: {:.3} s, {:.2} million rays{error}", cost.seconds, cost.rays as f64 / 1e6)
+        format!(
+            "{what}: {:.3} {TIME}, {:.2} million rays{error}",
+            cost.seconds,
+            cost.rays as f64 / 1e6
+        )
     };
     let heading = match advice.reached {
         true => format!("recommended for an error {goal}"),

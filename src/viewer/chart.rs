@@ -193,6 +193,8 @@ impl ChartPanel {
             ui.weak(
                 "Measures how samples, depth and cut-off change the error and the time of this scene",
             );
+            // The panel keeps its height until there is something to show.
+            ui.allocate_space(ui.available_size());
             return outcome;
         }
         let goal = Goal::Codes(self.wanted);
@@ -210,8 +212,8 @@ impl ChartPanel {
         ui.strong("Speed and accuracy");
         match &self.job {
             None => {
-                let about = "Traces this scene many times in the background; edits stay possible, \
-                             but make the times longer";
+                let about =
+                    "Traces this scene many times in the background; it can be edited meanwhile";
                 if ui.button("Measure").on_hover_text(about).clicked() {
                     self.start(ui.ctx(), scene);
                 }

@@ -3,7 +3,7 @@
 use eframe::egui::{Color32, Grid, RichText, ScrollArea, Sense, Ui};
 use egui_plot::{GridInput, GridMark, HoverPosition, Line, MarkerShape, Plot, PlotPoints, Points};
 
-use crate::chart::{COLORS, Chart, Cost, Deviation, Goal, Point, SETTINGS, about, text_of};
+use crate::chart::{COLORS, Chart, Cost, Deviation, Goal, Point, SETTINGS, TIME, about, text_of};
 use crate::scene::Scene;
 
 /// What was measured of one setting.
@@ -90,7 +90,7 @@ pub(super) fn plot_ui(ui: &mut Ui, width: f32, curves: &[Curve], chart: Option<&
         .allow_scroll(false)
         .allow_drag(false)
         .allow_boxed_zoom(false)
-        .x_axis_label("seconds")
+        .x_axis_label(TIME)
         .y_axis_label("error: rms of linear light")
         .x_grid_spacer(decades)
         .y_grid_spacer(decades)
@@ -189,8 +189,10 @@ pub(super) fn table_ui(
                     ui.label(format!("{:.4}", cost.seconds));
                     ui.label(format!("{:.2} M", cost.rays as f64 / 1e6));
                     ui.label(format!("{:.2e}", error.linear));
-                    let codes = format!("{:.2}", error.codes);
-                    ui.label(if goal.is_met(*error) { format!("{codes} ✔") } else { codes });
+                    let codes = RichText::new(format!("{:.2}", error.codes));
+                    let met = goal.is_met(*error);
+                    let codes = ui.label(if met { codes.strong() } else { codes.weak() });
+                    codes.on_hover_text("Error in code values of 8 bits; strong: as wanted");
                     ui.end_row();
                 }
             }

@@ -15,6 +15,7 @@ impl Window {
     /// Measures against a reference of so many samples, until it is done.
     fn measure(&mut self, reference: &str) {
         self.type_into("chart reference", reference);
+        self.type_into("wanted error", "15");
         self.click("Measure");
         self.until_text("Recommended for an error");
         self.harness.run_steps(3);
@@ -32,7 +33,7 @@ fn what_is_recommended_is_applied_as_one_step() {
     window.measure("64");
     let line = window.texts().into_iter().find(|text| text.starts_with("Recommended for an error"));
     let line = line.expect("a line");
-    assert!(line.contains("below one 8-bit code value rms: trace.samples = "), "{line}");
+    assert!(line.contains("below 15 8-bit code values rms: trace.samples = "), "{line}");
     let said = |path: &str| {
         let rest = &line[line.find(path).expect("a value") + path.len() + 3..];
         rest.split([',', ';']).next().expect("a value").parse::<f64>().expect("a number")
@@ -100,10 +101,11 @@ fn a_point_tells_its_numbers_when_the_pointer_rests_on_it() {
     let right = window.rect(Role::Button, "apply trace.samples = 1").left();
     let (top, bottom) = (window.rect(Role::Button, "apply trace.samples = 1").top(), 700.0);
     let mut told = Vec::new();
-    let (columns, rows) = (((right - left) / 6.0) as usize, ((bottom - top) / 6.0) as usize);
+    // Steps that no point's reach falls between.
+    let (columns, rows) = (((right - left) / 7.0) as usize, ((bottom - top) / 7.0) as usize);
     'search: for row in 0..rows {
         for column in 0..columns {
-            let at = Pos2::new(left + column as f32 * 6.0, top + row as f32 * 6.0);
+            let at = Pos2::new(left + column as f32 * 7.0, top + row as f32 * 7.0);
             window.harness.hover_at(at);
             window.harness.step();
             told = tips(&window);
@@ -115,12 +117,17 @@ fn a_point_tells_its_numbers_when_the_pointer_rests_on_it() {
     assert!(told.iter().any(|text| text.contains(" rays, rms ")), "{told:?}");
 }
 
-/// Texts that were drawn on top of a plot.
+/// All texts that are drawn, those in a plot too.
 fn tips(window: &Window) -> Vec<String> {
     let shapes = window.harness.output().shapes.iter();
-    let texts = shapes.filter_map(|shape| match &shape.shape {
-        eframe::egui::Shape::Text(text) => Some(text.galley.text().to_owned()),
-        _ => None,
-    });
-    texts.collect()
+    shapes.flat_map(|shape| texts_of(&shape.shape)).collect()
+}
+
+fn texts_of(shape: &eframe::egui::Shape) -> Vec<String> {
+    use eframe::egui::Shape;
+    match shape {
+        Shape::Text(text) => vec![text.galley.text().to_owned()],
+        Shape::Vec(shapes) => shapes.iter().flat_map(texts_of).collect(),
+        _ => Vec::new(),
+    }
 }

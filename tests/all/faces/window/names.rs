@@ -168,7 +168,7 @@ fn every_control_of_speed_and_accuracy_has_a_name_and_a_tooltip() {
     window.menu(&["View", "Speed and accuracy"]);
     window.type_into("chart reference", "8");
     window.click("Measure");
-    window.until_text("Recommended for an error");
+    window.until_text("Apply recommended");
     window.harness.run_steps(3);
     // What moved to make room is not new.
     let panel = window.rect(Role::Button, "Measure").top();
