@@ -4,6 +4,8 @@
 //! Planes of terms that are zero are skipped: adding zero changes no bit of a sum that began at +0,
 //! because no coefficient in front of it is infinite and no partial sum is −0.
 
+use std::sync::Arc;
+
 use fearless_simd::{Level, dispatch};
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -41,7 +43,7 @@ pub fn film(pool: &ThreadPool, transport: &Transport, values: &[[f32; 4]], film:
 /// The linear picture of some tiles, into 64 blocks for each.
 pub fn film_tiles(
     pool: &ThreadPool,
-    tiles: &[TransportTile],
+    tiles: &[Arc<TransportTile>],
     values: &[[f32; 4]],
     blocks: &mut [FilmBlock],
 ) {
