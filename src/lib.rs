@@ -41,6 +41,8 @@
 //! * **Order.** Terms are numbered by their factors along the path, never by discovery; a pixel is
 //!   summed from +0 in that order, its planes first, then its single coefficients; vector lanes run
 //!   across pixels. Thread count, tile order, released memory and edits therefore change no bit.
+//! * **Tiles stand alone.** A tile's light depends on the scene only: parts of a still, traced apart,
+//!   merge bit for bit.
 //! * **Bits.** No fused multiply-add, no power, logarithm or sine of the platform in what reaches a
 //!   coefficient; no number that depends on a running counter.
 //! * **Geometry is f64** and holds no epsilon with a length in it. The f32 hierarchy only leaves out
@@ -88,6 +90,8 @@ pub mod shade;
 pub mod session;
 // the work of a person: files, history, recovery
 pub mod document;
+// measurements
+pub mod chart;
 // faces
 pub mod bench;
 pub mod viewer;

@@ -1,9 +1,11 @@
 //! The command line: results on standard output, messages on standard error, exit codes.
 
 mod cached;
+mod chart;
 mod demo;
 mod inspect;
 mod render;
+mod tiles;
 mod watch;
 
 use std::fmt;
@@ -36,8 +38,12 @@ pub struct Arguments {
 enum Mode {
     /// Trace a scene, edit it, write the picture
     Render(render::Render),
+    /// Put a picture together from the parts that `render --tile` traced
+    Merge(tiles::Merge),
     /// Measure tracing, folding and re-shading
     Bench(Bench),
+    /// Chart speed against accuracy of a scene's settings, and recommend some
+    Chart(chart::Charted),
     /// Show a pixel's ray tree, its terms and their shares
     Inspect(inspect::Inspect),
     /// Read a scene and report every mistake in it
@@ -117,6 +123,8 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     match arguments.mode {
         None => window(arguments.scene),
         Some(Mode::Render(render)) => render.run(),
+        Some(Mode::Chart(chart)) => chart.run(),
+        Some(Mode::Merge(merge)) => merge.run(),
         Some(Mode::Inspect(inspect)) => inspect.run(),
         Some(Mode::Check(check)) => check.run(),
         Some(Mode::Bench(bench)) => bench.run(),

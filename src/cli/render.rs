@@ -6,19 +6,21 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::cached::{self, OpenedScene};
+use super::tiles::{self, check_part_name};
 use super::watch::watched;
 use super::{Common, Failure, print, read_scene, say, set, write_text};
 use crate::film::write::{Format, check_writable, picture};
 use crate::forest::grow::RayCounts;
 use crate::scene::{Scene, write};
 use crate::session::cache::OpenedCache;
+use crate::session::part::Share;
 use crate::session::{Class, EditReport, Options, Session};
 
 #[derive(Debug, Args)]
 pub(crate) struct Render {
     /// A scene file.
     scene: PathBuf,
-    /// The picture: .png or .exr.
+    /// The picture: .png or .exr; with --tile a .part.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Bits per channel of a PNG.
@@ -42,23 +44,21 @@ pub(crate) struct Render {
     /// cast fewer rays.
     #[arg(long, requires = "cache")]
     cache_trees: bool,
+    /// Trace part I of N of the picture alone, into a file `NAME.part`; `rayforest merge` puts the
+    /// parts together.
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["edit", "cache", "bits"])]
+    tile: Option<Share>,
     #[command(flatten)]
     common: Common,
 }
 
 impl Render {
     pub(crate) fn run(self) -> Result<(), Failure> {
+        if let Some(share) = self.tile {
+            return self.part(share);
+        }
         let format = Format::of(&self.output, self.bits == "16").map_err(Failure::input)?;
-        check_writable(&self.output).map_err(Failure::job)?;
-        if let Some(file) = self.stats.as_deref().filter(|f| *f != Path::new("-")) {
-            check_writable(file).map_err(Failure::job)?;
-        }
-        let mut scene = read_scene(&self.scene)?;
-        let options = self.common.apply(&mut scene)?;
-        for assignment in &self.set {
-            let (path, value) = split(assignment, "--set")?;
-            set(&mut scene, path, value, "--set")?;
-        }
+        let (scene, options) = self.prepare()?;
         // A mistake in an edit is found before the trace, not after it.
         let edits = self.edits(&scene)?;
         let OpenedScene { mut session, opened, stats: cache } = self.open(scene, options)?;
@@ -77,11 +77,8 @@ impl Render {
         let text = write::text(session.scene());
         let exposure = session.scene().picture.exposure;
         picture(&self.output, format, &session.film(), exposure, &text).map_err(Failure::job)?;
-        if let Some(file) = &self.stats {
-            let text = serde_json::to_string_pretty(&stats).map_err(Failure::job)?;
-            write_text(file, &text)?;
-        }
-        if self.stats.as_deref() != Some(Path::new("-")) {
+        self.write_stats(&stats)?;
+        if !self.stats_are_results() {
             let shown = self.output.display();
             let (how, seconds, rays) = match &opened {
                 Some(OpenedCache { cache, edit }) if edit.class < Class::Retrace => {
@@ -93,6 +90,43 @@ impl Render {
             print(&format!("{shown}: {how} in {seconds:.2} s, {rays:.2} million rays"));
         }
         Ok(())
+    }
+
+    /// Checks where results go, and reads the scene with all that is set before the trace.
+    fn prepare(&self) -> Result<(Scene, Options), Failure> {
+        check_writable(&self.output).map_err(Failure::job)?;
+        if let Some(file) = self.stats.as_deref().filter(|f| *f != Path::new("-")) {
+            check_writable(file).map_err(Failure::job)?;
+        }
+        let mut scene = read_scene(&self.scene)?;
+        let options = self.common.apply(&mut scene)?;
+        for assignment in &self.set {
+            let (path, value) = split(assignment, "--set")?;
+            set(&mut scene, path, value, "--set")?;
+        }
+        Ok((scene, options))
+    }
+
+    /// Traces one part of the picture.
+    fn part(&self, share: Share) -> Result<(), Failure> {
+        check_part_name(&self.output)?;
+        let (scene, options) = self.prepare()?;
+        let (stats, line) = tiles::trace(&scene, options, share, &self.output)?;
+        self.write_stats(&stats)?;
+        if !self.stats_are_results() {
+            print(&line);
+        }
+        Ok(())
+    }
+
+    fn write_stats(&self, stats: &Value) -> Result<(), Failure> {
+        let Some(file) = &self.stats else { return Ok(()) };
+        write_text(file, &serde_json::to_string_pretty(stats).map_err(Failure::job)?)
+    }
+
+    /// Whether standard output belongs to the statistics.
+    fn stats_are_results(&self) -> bool {
+        self.stats.as_deref() == Some(Path::new("-"))
     }
 
     /// Traces the scene, or opens it with what is kept of it.
@@ -118,7 +152,8 @@ impl Render {
     }
 }
 
-fn split<'a>(assignment: &'a str, option: &str) -> Result<(&'a str, &'a str), Failure> {
+/// Path and value of an assignment; the failure names the option that it came with.
+pub(crate) fn split<'a>(assignment: &'a str, option: &str) -> Result<(&'a str, &'a str), Failure> {
     assignment.split_once('=').map(|(p, v)| (p.trim(), v.trim())).ok_or_else(|| {
         Failure::input(format!("{option}: `{assignment}` is not of the form PATH=VALUE"))
     })

@@ -6,8 +6,10 @@ mod class;
 pub mod cost;
 pub mod inspect;
 pub mod live;
+pub mod part;
 pub mod plan;
 pub mod regrow;
+pub mod still;
 pub mod trace;
 
 use std::sync::{Arc, Mutex};

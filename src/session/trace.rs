@@ -1,6 +1,7 @@
 //! Traces and folds a whole picture, tile by tile on all threads, within a budget of memory.
 
 use std::fmt;
+use std::ops::AddAssign;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
@@ -136,6 +137,17 @@ pub struct TraceReport {
     pub nodes: u64,
 }
 
+impl AddAssign for TraceReport {
+    /// One trace after the other.
+    fn add_assign(&mut self, other: TraceReport) {
+        let TraceReport { seconds, fold_seconds, rays, nodes } = other;
+        self.seconds += seconds;
+        self.fold_seconds += fold_seconds;
+        self.rays += rays;
+        self.nodes += nodes;
+    }
+}
+
 /// Traces `scene` without keeping anything: what the same rays cost by themselves.
 pub fn trace_only(
     scene: &Scene,
@@ -179,8 +191,24 @@ pub fn trace(
     reuse: Forest,
     progress: &Progress,
 ) -> Result<Traced, TraceError> {
+    let tiles = (0..Layout::new(scene.picture.size).tiles()).collect();
+    progress.begin(Layout::new(scene.picture.size).tiles() as u64);
+    trace_tiles((scene, tiles), geometry, pool, keep, reuse, progress)
+}
+
+/// The same of some tiles of the picture: forest and matrix hold theirs alone, in the order asked
+/// for. Steps of `progress` are tiles; whoever calls begins it.
+pub(super) fn trace_tiles(
+    (scene, tiles): (&Scene, Vec<usize>),
+    geometry: &Geometry,
+    pool: &ThreadPool,
+    keep: Keep,
+    reuse: Forest,
+    progress: &Progress,
+) -> Result<Traced, TraceError> {
     let start = Instant::now();
-    let job = Job::new(scene, geometry, pool.current_num_threads(), keep, reuse, progress);
+    let threads = pool.current_num_threads();
+    let job = Job::new((scene, tiles), geometry, threads, keep, reuse, progress);
     let outcomes = pool.broadcast(|_| job.work());
     let mut report = TraceReport::default();
     let threads = outcomes.len() as f64;
@@ -208,6 +236,8 @@ struct Job<'a> {
     grower: Grower<'a>,
     names: Names,
     layout: Layout,
+    /// What is traced: the tile of every slot.
+    tiles: Vec<usize>,
     samples: u32,
     peaks: Vec<Option<Peak>>,
     progress: &'a Progress,
@@ -286,7 +316,7 @@ struct Outcome {
 
 impl<'a> Job<'a> {
     fn new(
-        scene: &Scene,
+        (scene, tiles): (&Scene, Vec<usize>),
         geometry: &'a Geometry,
         threads: usize,
         keep: Keep,
@@ -301,7 +331,6 @@ impl<'a> Job<'a> {
             Ledger { bytes: reuse.bytes(), old: old_tiles, trees: Vec::new(), lists: Vec::new() };
         let mut old = reuse.tiles.into_iter().map(|trees| trees.and_then(Arc::into_inner));
         let slot = |_| Mutex::new(Slot { old: old.next().flatten(), ..Slot::default() });
-        progress.begin(layout.tiles() as u64);
         let budget = usize::try_from(keep.bytes).unwrap_or(usize::MAX);
         Job {
             kept: keep.what,
@@ -312,7 +341,8 @@ impl<'a> Job<'a> {
             peaks: scene.materials.iter().map(|m| Some(Peak::of(m))).collect(),
             progress,
             next: AtomicUsize::new(0),
-            slots: (0..layout.tiles()).map(slot).collect(),
+            slots: (0..tiles.len()).map(slot).collect(),
+            tiles,
             trie: Mutex::default(),
             ledger: Mutex::new(ledger),
             budget,
@@ -326,11 +356,12 @@ impl<'a> Job<'a> {
         let mut folder = Folder::default();
         let mut scratch = KeptTrees::default();
         let mut outcome = Outcome::default();
-        while let Some(tile) = claim(&self.next, self.layout.tiles()) {
+        while let Some(place) = claim(&self.next, self.tiles.len()) {
             // Memory of the earlier trace is written at once, new memory is taken when its size is
             // known.
-            let mut old = self.take_old(tile);
+            let mut old = self.take_old(place);
             let trees = old.as_mut().unwrap_or(&mut scratch);
+            let tile = self.tiles[place];
             let whole = self.tile(tile, &mut worker, &mut folder, trees, &mut outcome)?;
             let folding = Instant::now();
             let transport = self.finish_tile(&mut folder);
@@ -338,7 +369,7 @@ impl<'a> Job<'a> {
             // A clone takes no more memory than it needs.
             let kept = (whole && self.kept == Kept::Trees)
                 .then(|| Arc::new(old.map_or_else(|| scratch.clone(), KeptTrees::trimmed)));
-            self.store(tile, kept, transport)?;
+            self.store(place, kept, transport)?;
             self.progress.step();
         }
         outcome.rays = worker.rays;
@@ -400,33 +431,33 @@ impl<'a> Job<'a> {
     /// tile's trees and those of others, then highlight lists: the matrix alone is always kept.
     fn store(
         &self,
-        tile: usize,
+        place: usize,
         trees: Option<Arc<KeptTrees>>,
         transport: TransportTile,
     ) -> Result<(), TraceError> {
         // Whoever holds the ledger may lock a slot, never the other way round.
         let mut ledger = self.ledger.lock().expect("no worker panicked");
-        let mut slot = self.slot(tile);
+        let mut slot = self.slot(place);
         (slot.trees, slot.transport) = (trees, transport);
         ledger.bytes += slot.transport.bytes() + slot.list_bytes() + slot.tree_bytes();
         if slot.trees.is_some() {
-            ledger.trees.push(tile);
+            ledger.trees.push(place);
         }
-        ledger.lists.push(tile);
+        ledger.lists.push(place);
         drop(slot);
         ledger.release(&self.slots, self.budget)
     }
 
     /// Memory of the earlier trace for a tile: from now on it counts as the tile's own need.
-    fn take_old(&self, tile: usize) -> Option<KeptTrees> {
+    fn take_old(&self, place: usize) -> Option<KeptTrees> {
         let mut ledger = self.ledger.lock().expect("no worker panicked");
-        let old = self.slot(tile).old.take();
+        let old = self.slot(place).old.take();
         ledger.bytes -= old.as_ref().map_or(0, KeptTrees::bytes);
         old
     }
 
-    fn slot(&self, tile: usize) -> MutexGuard<'_, Slot> {
-        self.slots[tile].lock().expect("no worker panicked")
+    fn slot(&self, place: usize) -> MutexGuard<'_, Slot> {
+        self.slots[place].lock().expect("no worker panicked")
     }
 
     /// Numbers the terms canonically and puts the tiles together.

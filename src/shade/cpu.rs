@@ -5,6 +5,8 @@
 //! because no coefficient in front of it is infinite and no partial sum is −0. A coefficient of −0
 //! adds nothing either.
 
+use std::sync::Arc;
+
 use fearless_simd::{Level, dispatch};
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -36,10 +38,21 @@ impl Tiles<'_> {
 /// The linear picture of all tiles, into a film of the transport's layout.
 pub fn film(pool: &ThreadPool, transport: &Transport, values: &[[f32; 4]], film: &mut Film) {
     assert_eq!(film.layout, transport.layout, "a film of the same cut");
+    film_tiles(pool, &transport.tiles, values, &mut film.blocks);
+}
+
+/// The linear picture of some tiles, into 64 blocks for each.
+pub fn film_tiles(
+    pool: &ThreadPool,
+    tiles: &[Arc<TransportTile>],
+    values: &[[f32; 4]],
+    blocks: &mut [FilmBlock],
+) {
+    assert_eq!(blocks.len(), tiles.len() * TILE_BLOCKS, "64 blocks for each tile");
     let level = Level::new();
     pool.install(|| {
-        let parts = film.blocks.par_chunks_exact_mut(TILE_BLOCKS);
-        parts.zip(&transport.tiles).for_each_init(Vec::new, |gathered, (blocks, tile)| {
+        let parts = blocks.par_chunks_exact_mut(TILE_BLOCKS);
+        parts.zip(tiles).for_each_init(Vec::new, |gathered, (blocks, tile)| {
             gather(tile, values, gathered);
             dispatch!(level, _simd => film_tile(tile, gathered, blocks));
         });

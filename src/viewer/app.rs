@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use eframe::egui::{CentralPanel, Context, Frame, Margin, Panel, Popup, Ui, Vec2, ViewportCommand};
 
 use super::Setup;
+use super::chart::ChartPanel;
 use super::command::Command;
 use super::files::Files;
 use super::handles::{Handles, Stage};
@@ -47,6 +48,7 @@ pub struct App {
     pub(super) renaming: Option<Renaming>,
     handles: Handles,
     pub(super) mixer: Mixer,
+    pub(super) chart: ChartPanel,
     /// The selection whose costs are watched, and how many solids and materials the scene had.
     watched: Option<Vec<String>>,
     /// A gesture of the wheel lasts until then.
@@ -97,6 +99,7 @@ impl App {
             renaming: None,
             handles: Handles::default(),
             mixer: Mixer::default(),
+            chart: ChartPanel::new(setup.options),
             watched: None,
             wheel_until: None,
             view: Vec2::ZERO,
@@ -120,6 +123,7 @@ impl App {
         let mut changed = false;
         self.bars(ui, &mut commands);
         let step = self.mixer_ui(ui, &mut edited, &mut changed);
+        let step = step.or(self.chart_ui(ui, &mut edited, &mut changed));
         let outcome = self.panels(ui, &mut edited, &mut commands);
         changed |= self.apply_outcome(outcome, &mut edited);
         changed |= self.picture_ui(ui, &mut edited);
@@ -197,6 +201,7 @@ impl App {
                 focus_tool: self.picture.focus_tool,
                 handles: !self.handles.hidden,
                 mixer: self.mixer.open,
+                chart: self.chart.open,
                 subject: self.subject(),
                 keep: self.keep_offer(),
             };
@@ -389,6 +394,7 @@ impl App {
             Command::FocusTool => self.picture.focus_tool = !self.picture.focus_tool,
             Command::Handles => self.handles.hidden = !self.handles.hidden,
             Command::Mixer => self.mixer.open = !self.mixer.open,
+            Command::Chart => self.chart.open = !self.chart.open,
             Command::AddLight
             | Command::AddMaterial
             | Command::Duplicate

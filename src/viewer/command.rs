@@ -53,6 +53,8 @@ pub(super) enum Command {
     Handles,
     /// Whether the light mixer shows.
     Mixer,
+    /// Whether the chart of speed against accuracy shows.
+    Chart,
     /// Stops the running trace, export or keeping.
     Stop,
     /// Traces what a stop left out.
@@ -89,6 +91,7 @@ impl Command {
             Command::FocusTool => "Focus by click",
             Command::Handles => "Light handles",
             Command::Mixer => "Light mixer",
+            Command::Chart => "Speed and accuracy",
             Command::Stop => "Stop",
             Command::Resume => "Trace now",
         }
@@ -128,6 +131,9 @@ impl Command {
             }
             Command::Handles => "Handles in the picture that move and turn the lights",
             Command::Mixer => "All lights side by side: on, solo, stops, colour, temperature",
+            Command::Chart => {
+                "Measures samples, depth and cut-off of this scene, and recommends settings"
+            }
             Command::Stop => "Stops what runs; the last whole picture stays",
             Command::Resume => "Traces the picture that was stopped",
         }
@@ -162,6 +168,7 @@ impl Command {
             | Command::AddLight
             | Command::AddMaterial
             | Command::Assign
+            | Command::Chart
             | Command::Resume => None,
         }
     }

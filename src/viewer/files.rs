@@ -254,6 +254,7 @@ impl App {
         self.selection = Selection::Scene;
         (self.picked, self.renaming) = (None, None);
         self.mixer.forget();
+        self.chart.forget();
         self.show_opened();
     }
 

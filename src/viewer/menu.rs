@@ -22,6 +22,8 @@ pub(super) struct MenuState<'a> {
     pub(super) handles: bool,
     /// Whether the light mixer shows.
     pub(super) mixer: bool,
+    /// Whether the chart of speed against accuracy shows.
+    pub(super) chart: bool,
     /// What commands about lights and materials are about.
     pub(super) subject: Subject,
     /// Whether what was traced can be kept.
@@ -192,6 +194,7 @@ fn view_menu(
         (Command::FocusTool, state.focus_tool),
         (Command::Handles, state.handles),
         (Command::Mixer, state.mixer),
+        (Command::Chart, state.chart),
     ] {
         let button = with_keys(ui, command, command.name()).selected(on);
         if ui.add(button).on_hover_text(command.about()).clicked() {

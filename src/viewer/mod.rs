@@ -3,6 +3,8 @@
 mod app;
 mod badge;
 mod carry;
+mod chart;
+mod chart_plot;
 mod command;
 mod control;
 pub mod dialog;

@@ -1,10 +1,10 @@
 //! Values and arrays as little-endian bytes, and back with every length checked.
 
 /// Why bytes do not hold what they should: a few words.
-pub(super) type Unsound = &'static str;
+pub(in crate::session) type Unsound = &'static str;
 
 /// A value of a fixed number of bytes.
-pub(super) trait Item: Copy {
+pub(in crate::session) trait Item: Copy {
     /// How many.
     const BYTES: usize;
     /// Writes it into that many bytes.
@@ -93,29 +93,29 @@ pub(super) use record;
 
 /// Bytes in the making.
 #[derive(Default)]
-pub(super) struct Section {
+pub(in crate::session) struct Section {
     /// What was written so far.
-    pub(super) bytes: Vec<u8>,
+    pub(in crate::session) bytes: Vec<u8>,
     /// Bytes of memory that the arrays written so far take when they are read.
-    pub(super) held: u64,
+    pub(in crate::session) held: u64,
 }
 
 impl Section {
     /// Empties it and keeps its memory.
-    pub(super) fn clear(&mut self) {
+    pub(in crate::session) fn clear(&mut self) {
         self.bytes.clear();
         self.held = 0;
     }
 
     /// Appends one value.
-    pub(super) fn value<T: Item>(&mut self, value: T) {
+    pub(in crate::session) fn value<T: Item>(&mut self, value: T) {
         let at = self.bytes.len();
         self.bytes.resize(at + T::BYTES, 0);
         value.put(&mut self.bytes[at..]);
     }
 
     /// Appends the length and the items of an array.
-    pub(super) fn array<T: Item>(&mut self, items: &[T]) {
+    pub(in crate::session) fn array<T: Item>(&mut self, items: &[T]) {
         self.value(items.len() as u64);
         self.held += size_of_val(items) as u64;
         let at = self.bytes.len();
@@ -127,27 +127,27 @@ impl Section {
 }
 
 /// Bytes being read.
-pub(super) struct Source<'a> {
+pub(in crate::session) struct Source<'a> {
     rest: &'a [u8],
     /// Bytes of memory that the arrays read so far take.
-    pub(super) held: u64,
+    pub(in crate::session) held: u64,
 }
 
 impl<'a> Source<'a> {
     /// From the first byte on.
-    pub(super) fn new(bytes: &'a [u8]) -> Source<'a> {
+    pub(in crate::session) fn new(bytes: &'a [u8]) -> Source<'a> {
         Source { rest: bytes, held: 0 }
     }
 
     /// The next value.
-    pub(super) fn value<T: Item>(&mut self) -> Result<T, Unsound> {
+    pub(in crate::session) fn value<T: Item>(&mut self) -> Result<T, Unsound> {
         let (bytes, rest) = self.rest.split_at_checked(T::BYTES).ok_or("it ends too early")?;
         self.rest = rest;
         if T::sound(bytes) { Ok(T::take(bytes)) } else { Err("a value is not of its kind") }
     }
 
     /// The next array, in memory of exactly its size.
-    pub(super) fn array<T: Item>(&mut self) -> Result<Vec<T>, Unsound> {
+    pub(in crate::session) fn array<T: Item>(&mut self) -> Result<Vec<T>, Unsound> {
         let count = usize::try_from(self.value::<u64>()?).unwrap_or(usize::MAX);
         let bytes = count.checked_mul(T::BYTES).and_then(|n| self.rest.split_at_checked(n));
         let (bytes, rest) = bytes.ok_or("an array is longer than what is there")?;
@@ -161,7 +161,7 @@ impl<'a> Source<'a> {
     }
 
     /// Whether all was read.
-    pub(super) fn end(self) -> Result<(), Unsound> {
+    pub(in crate::session) fn end(self) -> Result<(), Unsound> {
         if self.rest.is_empty() { Ok(()) } else { Err("something follows its end") }
     }
 }

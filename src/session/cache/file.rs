@@ -190,7 +190,7 @@ fn hash_list<T, B: AsRef<[u8]>>(hasher: &mut XxHash3_128, list: &[T], bytes: imp
 
 /// The hashes of the meshes of a scene's solids, in their order; a mesh of several solids is read
 /// once.
-pub(super) fn hashes(scene: &Scene) -> Vec<u128> {
+pub(in crate::session) fn hashes(scene: &Scene) -> Vec<u128> {
     let mut known: Vec<(&Arc<Mesh>, u128)> = Vec::new();
     let mut hashes = Vec::new();
     for solid in &scene.solids {

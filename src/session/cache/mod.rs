@@ -8,9 +8,9 @@
 //! before it is used: a cut, changed, foreign or stale file is an answer, never a panic, and never a
 //! picture of something else.
 
-mod codec;
+pub(super) mod codec;
 mod error;
-mod file;
+pub(super) mod file;
 mod lists;
 mod open;
 mod parts;
@@ -41,7 +41,7 @@ pub fn path_of(scene: &Path) -> PathBuf {
 
 /// The program as far as its numbers depend on it. Bits are the same on every CPU of one
 /// architecture.
-fn program() -> String {
+pub(super) fn program() -> String {
     format!("{} {NUMBERS} {}", env!("CARGO_PKG_VERSION"), std::env::consts::ARCH)
 }
 

@@ -7,6 +7,7 @@ mod comes_alive;
 mod floors;
 mod histories;
 mod memory;
+mod parts;
 pub(crate) mod random;
 mod regrows;
 mod stopped;

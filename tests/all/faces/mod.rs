@@ -2,10 +2,12 @@
 
 mod bad_input;
 mod cache;
+mod chart;
 mod command_line;
 #[cfg(target_os = "linux")]
 mod display;
 mod killed;
+mod parts;
 mod window;
 
 use std::path::Path;

@@ -162,6 +162,25 @@ fn every_control_of_the_mixer_has_a_name_and_a_tooltip() {
 }
 
 #[test]
+fn every_control_of_speed_and_accuracy_has_a_name_and_a_tooltip() {
+    let mut window = tall();
+    let before = window.controls();
+    window.menu(&["View", "Speed and accuracy"]);
+    window.type_into("chart reference", "8");
+    window.click("Measure");
+    window.until_text("Apply recommended");
+    window.harness.run_steps(3);
+    // What moved to make room is not new.
+    let panel = window.rect(Role::Button, "Measure").top();
+    let mut others = window.controls();
+    others.retain(|control| before.iter().any(|old| old.name == control.name));
+    let below = |control: &Control| control.rect.center().y > 1380.0 || control.rect.top() < panel;
+    let hidden = window.controls().into_iter().filter(below);
+    others.extend(hidden);
+    window.walk(&others, 8);
+}
+
+#[test]
 fn every_item_of_the_menu_of_a_line_has_a_name_and_a_tooltip() {
     let mut window = tall();
     for (line, least) in [("mirror", 4), ("fill", 3)] {
