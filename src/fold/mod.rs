@@ -153,14 +153,13 @@ impl Folder {
     pub fn block_part(
         &mut self,
         reader: &mut Reader,
-        covered: [bool; LANES],
-        samples: u32,
+        counts: &[u32; LANES],
         names: &Names,
         (old, block): (&TransportTile, usize),
     ) {
         self.signed |= reader.is_weighted();
-        for (lane, _) in covered.iter().enumerate().filter(|(_, c)| **c) {
-            for _ in 0..samples {
+        for (lane, count) in counts.iter().enumerate() {
+            for _ in 0..*count {
                 self.position = 0;
                 if reader.sample() {
                     self.tree(reader, lane, names);
@@ -178,17 +177,11 @@ impl Folder {
         self.end_block();
     }
 
-    /// Folds the trees of a block: `samples` of each lane that `covered` says to hold a pixel.
-    pub fn block(
-        &mut self,
-        reader: &mut Reader,
-        covered: [bool; LANES],
-        samples: u32,
-        names: &Names,
-    ) {
+    /// Folds the trees of a block; `counts` has the number of samples of every lane, 0 without a pixel.
+    pub fn block(&mut self, reader: &mut Reader, counts: &[u32; LANES], names: &Names) {
         self.signed |= reader.is_weighted();
-        for (lane, _) in covered.iter().enumerate().filter(|(_, c)| **c) {
-            for _ in 0..samples {
+        for (lane, count) in counts.iter().enumerate() {
+            for _ in 0..*count {
                 self.position = 0;
                 if reader.sample() {
                     self.tree(reader, lane, names);

@@ -5,7 +5,8 @@ use crate::forest::sink::{Side, Sink};
 use crate::forest::tree::{Ends, NO_FRESNEL, TileTrees};
 use crate::scene::model::Measure;
 
-const ALL: [bool; LANES] = [true; LANES];
+/// Two samples in every lane.
+const ALL: [u32; LANES] = [2; LANES];
 
 fn node(material: u16, reflected: Branch) -> Node {
     let ends = Ends::new(reflected, Branch::Zero, false);
@@ -51,7 +52,7 @@ fn names() -> Names {
 fn folded(trees: &TileTrees) -> (Trie, TransportTile) {
     let mut folder = Folder::default();
     folder.begin_tile();
-    folder.block(&mut trees.read(0), ALL, 2, &names());
+    folder.block(&mut trees.read(0), &ALL, &names());
     let Folded { trie, tile } = folder.finish_tile(0.5, &[8.0, 2.0, 1.0].map(power));
     (trie.clone(), tile)
 }
@@ -144,7 +145,7 @@ fn a_new_exponent_gives_what_a_fresh_fold_gives() {
     let (_, mut kept) = folded(&trees);
     let mut folder = Folder::default();
     folder.begin_tile();
-    folder.block(&mut trees.read(0), ALL, 2, &names());
+    folder.block(&mut trees.read(0), &ALL, &names());
     let fresh = folder.finish_tile(0.5, &[8.0, 31.0, 1.0].map(power)).tile;
     assert_ne!(kept, fresh);
     let peaks = [None, power(31.0), None];

@@ -171,11 +171,11 @@ impl Grower<'_> {
         sink: &mut Again,
         limits: Limits,
     ) -> Result<(), Stop> {
-        let eye = self.eye.as_ref().map(|eye| (eye, eye.weights(pixel)));
+        let eye = self.pixel_eye(pixel, self.samples);
         for index in 0..self.samples {
             let at = Sample { pixel, index };
             // Weights stand beside all samples.
-            let weighed = eye.map(|eye| self.eye_ray(Some(eye), at, worker, sink));
+            let weighed = (!eye.is_plain()).then(|| self.eye_ray(eye, at, worker, sink));
             let kept = trees.as_mut().expect("kept trees");
             let hit = kept.sample();
             if hit && self.is_untouched(scope, Scope::EYE, kept.peek()) {
@@ -188,7 +188,7 @@ impl Grower<'_> {
                 continue;
             }
             worker.media.clear();
-            let ray = weighed.unwrap_or_else(|| self.eye_ray(None, at, worker, sink));
+            let ray = weighed.unwrap_or_else(|| self.eye_ray(eye, at, worker, sink));
             worker.pending.push(Pending::eye(ray, Known::Hit, Scope::EYE));
             while let Some(next) = worker.pending.pop() {
                 limits.check(sink)?;

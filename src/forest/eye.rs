@@ -31,8 +31,8 @@ impl Eye {
     }
 
     /// The weights of a pixel's samples.
-    pub(super) fn weights(&self, pixel: [u32; 2]) -> Weights {
-        self.filter.weights(pixel, self.samples)
+    fn weights(&self, pixel: [u32; 2], samples: u32) -> Weights {
+        self.filter.weights(pixel, samples)
     }
 
     /// The ray of a sample, whose time the stack is set to and whose weight the sink is told. The
@@ -42,7 +42,7 @@ impl Eye {
         &self,
         view: &View,
         at: Sample,
-        weights: Weights,
+        (weights, share): (Weights, Option<f32>),
         stack: &mut Stack,
         sink: &mut K,
     ) -> Ray {
@@ -52,8 +52,10 @@ impl Eye {
             _ => at.numbers(effect, ROOT_PATH),
         };
         let (place, negative) = filter.place(numbers(Effect::Position));
-        if filter.is_signed() {
-            sink.weigh(weights.of(negative));
+        match (filter.is_signed(), share) {
+            (true, share) => sink.weigh(weights.of(negative) * share.unwrap_or(1.0)),
+            (false, Some(share)) => sink.weigh(share),
+            (false, None) => {}
         }
         if let Some(shutter) = shutter {
             stack.set_time(shutter * numbers(Effect::Time)[0]);
@@ -66,23 +68,52 @@ impl Eye {
     }
 }
 
+/// What is the same for all samples of a pixel.
+#[derive(Clone, Copy)]
+pub(super) struct PixelEye<'a> {
+    eye: Option<(&'a Eye, Weights)>,
+    /// All samples over those that the pixel has, where sampling is adaptive.
+    share: Option<f32>,
+}
+
+impl PixelEye<'_> {
+    /// Whether samples have no weights of their own, no time and no place on a lens.
+    #[inline(always)]
+    pub(super) fn is_plain(self) -> bool {
+        self.eye.is_none() && self.share.is_none()
+    }
+}
+
 impl Grower<'_> {
+    /// The eye for a pixel that has `count` samples.
+    #[inline(always)]
+    pub(super) fn pixel_eye(&self, pixel: [u32; 2], count: u32) -> PixelEye<'_> {
+        let eye = self.eye.as_ref().map(|eye| (eye, eye.weights(pixel, count)));
+        let share = self.map.is_some().then(|| self.samples as f32 / count as f32);
+        PixelEye { eye, share }
+    }
+
     /// The ray of a sample; its time is the worker's from now on, and the sink knows its weight.
     #[inline(always)]
     pub(super) fn eye_ray<K: Sink>(
         &self,
-        eye: Option<(&Eye, Weights)>,
+        PixelEye { eye, share }: PixelEye<'_>,
         at: Sample,
         worker: &mut Worker,
         sink: &mut K,
     ) -> Ray {
         match eye {
             None => {
+                if let Some(share) = share {
+                    sink.weigh(share);
+                }
                 let [x, y] = at.pixel.map(f64::from);
                 let [u, v] = sampling::in_pixel(at.pixel, at.index, self.samples);
                 self.view.ray(x + u, y + v)
             }
-            Some((eye, weights)) => eye.ray(&self.view, at, weights, &mut worker.stack, sink),
+            Some((eye, weights)) => {
+                eye.ray(&self.view, at, (weights, share), &mut worker.stack, sink)
+            }
         }
     }
 }

@@ -4,6 +4,7 @@ use fearless_simd::{Level, Simd, dispatch};
 use glam::DVec3;
 
 use super::camera::View;
+use super::counts::SampleMap;
 use super::eye::Eye;
 use super::kept::{Met, Recall, Recalled};
 use super::lobe::{self, Lit, Lobe};
@@ -46,7 +47,7 @@ pub struct Grower<'a> {
     pub(super) geometry: &'a Geometry,
     values: FactorValues,
     /// Per solid.
-    opaque: Vec<bool>,
+    pub(super) opaque: Vec<bool>,
     /// Directions are of length 1.
     pub(super) lights: Vec<LightPlace>,
     /// Per light the key of its records in kept trees.
@@ -63,6 +64,8 @@ pub struct Grower<'a> {
     pub(super) eye: Option<Eye>,
     pub(super) layout: Layout,
     pub(super) samples: u32,
+    /// Where sampling is adaptive, the pixels' own numbers of samples.
+    pub(super) map: Option<&'a SampleMap>,
     pub(super) level: Level,
 }
 
@@ -198,6 +201,7 @@ impl<'a> Grower<'a> {
             eye: Eye::of(scene),
             layout: Layout::new(scene.picture.size),
             samples: scene.trace.samples,
+            map: None,
             level: Level::new(),
         }
     }
@@ -246,9 +250,10 @@ impl<'a> Grower<'a> {
         let limits = Limits { most, progress };
         sink.block();
         for lane in 0..LANES {
-            if let Some(pixel) = self.layout.pixel(Place { tile, block, lane }) {
+            let place = Place { tile, block, lane };
+            if self.layout.pixel(place).is_some() {
                 let kept = &mut kept;
-                dispatch!(self.level, simd => self.pixel(simd, worker, pixel, kept, sink, limits))?;
+                dispatch!(self.level, simd => self.pixel(simd, worker, place, kept, sink, limits))?;
             }
         }
         Ok(())
@@ -259,15 +264,26 @@ impl<'a> Grower<'a> {
         &self,
         simd: S,
         worker: &mut Worker,
-        pixel: [u32; 2],
+        place: Place,
         kept: &mut Option<Recall<'_>>,
         sink: &mut K,
         limits: Limits,
     ) -> Result<(), Stop> {
-        let eye = self.eye.as_ref().map(|eye| (eye, eye.weights(pixel)));
-        for index in 0..self.samples {
+        let pixel = self.layout.pixel(place).expect("a lane with a pixel");
+        let count = self.map.map_or(self.samples, |map| map.of(place));
+        let known = kept.as_ref().map_or(0, |kept| kept.count(place.lane).unwrap_or(self.samples));
+        let eye = self.pixel_eye(pixel, count);
+        for index in 0..count {
             let ray = self.eye_ray(eye, Sample { pixel, index }, worker, sink);
+            let kept = if index < known { &mut *kept } else { &mut None };
             self.sample(simd, worker, ray, kept, sink, limits)?;
+        }
+        for _ in count..known {
+            if let Some(kept) = kept.as_mut()
+                && kept.sample()
+            {
+                kept.skip();
+            }
         }
         Ok(())
     }

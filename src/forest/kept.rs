@@ -1,7 +1,7 @@
 //! Ray trees as they are kept: what rays met, from which everything else is computed again.
 
 use super::tree::{BLOCKED, Branch, Ends, LightHit, Node, TileTrees};
-use crate::film::layout::TILE_BLOCKS;
+use crate::film::layout::{LANES, TILE_BLOCKS};
 
 /// Where a ray of the seen path met a surface: 16 bytes. The ray itself follows from the pixel, the
 /// sample and the nodes above, and so do normals, media and cosines.
@@ -42,6 +42,8 @@ pub struct KeptLight {
 /// takes from them the answers to the rays that it would otherwise cast.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct KeptTrees {
+    /// Where sampling is adaptive, the number of samples of every lane of every block.
+    pub counts: Vec<u16>,
     /// Where each of the tile's 64 blocks begins, and the end.
     pub blocks: Vec<KeptStart>,
     /// Per sample a bit, whether its ray met the scene: sample 0 of a block is bit 0 of its first
@@ -71,7 +73,8 @@ pub struct KeptStart {
 impl KeptTrees {
     /// Empties it, to be filled block by block.
     pub fn clear(&mut self) {
-        let KeptTrees { blocks, hits, nodes, lights, crossings } = self;
+        let KeptTrees { counts, blocks, hits, nodes, lights, crossings } = self;
+        counts.clear();
         blocks.clear();
         blocks.push(KeptStart::default());
         hits.clear();
@@ -82,7 +85,8 @@ impl KeptTrees {
 
     /// Makes room for as much as `other` holds.
     pub fn reserve_as(&mut self, other: &KeptTrees) {
-        let KeptTrees { blocks, hits, nodes, lights, crossings } = other;
+        let KeptTrees { counts, blocks, hits, nodes, lights, crossings } = other;
+        self.counts.reserve_exact(counts.len());
         self.blocks.reserve_exact(blocks.len());
         self.hits.reserve_exact(hits.len());
         self.nodes.reserve_exact(nodes.len());
@@ -97,8 +101,9 @@ impl KeptTrees {
 
     /// Allocated bytes of all arrays.
     pub fn bytes(&self) -> usize {
-        let KeptTrees { blocks, hits, nodes, lights, crossings } = self;
-        blocks.capacity() * size_of::<KeptStart>()
+        let KeptTrees { counts, blocks, hits, nodes, lights, crossings } = self;
+        counts.capacity() * 2
+            + blocks.capacity() * size_of::<KeptStart>()
             + hits.capacity() * 8
             + nodes.capacity() * size_of::<KeptNode>()
             + lights.capacity() * size_of::<KeptLight>()
@@ -107,12 +112,18 @@ impl KeptTrees {
 
     /// Bytes of what is stored, without room for more.
     pub fn used_bytes(&self) -> usize {
-        let KeptTrees { blocks, hits, nodes, lights, crossings } = self;
-        size_of_val(&**blocks)
+        let KeptTrees { counts, blocks, hits, nodes, lights, crossings } = self;
+        size_of_val(&**counts)
+            + size_of_val(&**blocks)
             + size_of_val(&**hits)
             + size_of_val(&**nodes)
             + size_of_val(&**lights)
             + size_of_val(&**crossings)
+    }
+
+    /// Notes how many samples each lane of the block appended next has, where they may differ.
+    pub fn push_counts(&mut self, counts: &[u32; LANES]) {
+        self.counts.extend(counts.map(|count| count as u16));
     }
 
     /// Appends a block just grown, the first one in `grown`. `keys` has one key per light.
@@ -134,6 +145,9 @@ impl KeptTrees {
     pub fn push_block(&mut self, other: &KeptTrees, block: usize) {
         let [from, to] = [other.blocks[block], other.blocks[block + 1]];
         let range = |a: u32, b: u32| a as usize..b as usize;
+        if !other.counts.is_empty() {
+            self.counts.extend_from_slice(&other.counts[block * LANES..(block + 1) * LANES]);
+        }
         self.hits.extend_from_slice(&other.hits[range(from.word, to.word)]);
         self.nodes.extend_from_slice(&other.nodes[range(from.node, to.node)]);
         self.lights.extend_from_slice(&other.lights[range(from.light, to.light)]);
@@ -152,6 +166,9 @@ impl KeptTrees {
     /// Ends a block whose camera rays met what they met in `other`.
     pub(super) fn end_block_as(&mut self, other: &KeptTrees, block: usize) {
         let [from, to] = [other.blocks[block], other.blocks[block + 1]];
+        if !other.counts.is_empty() {
+            self.counts.extend_from_slice(&other.counts[block * LANES..(block + 1) * LANES]);
+        }
         self.hits.extend_from_slice(&other.hits[from.word as usize..to.word as usize]);
         self.end_block();
     }
@@ -167,7 +184,8 @@ impl KeptTrees {
 
     /// The same trees, moved to smaller memory if they leave more than an eighth of theirs free.
     pub fn trimmed(mut self) -> KeptTrees {
-        let KeptTrees { blocks, hits, nodes, lights, crossings } = &mut self;
+        let KeptTrees { counts, blocks, hits, nodes, lights, crossings } = &mut self;
+        trim(counts);
         trim(blocks);
         trim(hits);
         trim(nodes);
@@ -179,7 +197,7 @@ impl KeptTrees {
     /// Reads a block's samples in order.
     pub fn recall(&self, block: usize) -> Recall<'_> {
         let at = self.blocks[block];
-        Recall { trees: self, at, bit: 0 }
+        Recall { trees: self, block, at, bit: 0 }
     }
 }
 
@@ -192,6 +210,7 @@ fn trim<T>(array: &mut Vec<T>) {
 /// Reads kept trees in order.
 pub struct Recall<'a> {
     trees: &'a KeptTrees,
+    block: usize,
     at: KeptStart,
     bit: u32,
 }
@@ -206,6 +225,12 @@ pub struct Recalled<'a> {
 }
 
 impl<'a> Recall<'a> {
+    /// How many samples of a lane there are, if not as many as of every other.
+    #[inline(always)]
+    pub(super) fn count(&self, lane: usize) -> Option<u32> {
+        self.trees.counts.get(self.block * LANES + lane).map(|&count| count.into())
+    }
+
     /// Whether the next sample's ray met the scene; its nodes follow.
     #[inline(always)]
     pub fn sample(&mut self) -> bool {

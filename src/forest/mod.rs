@@ -2,6 +2,7 @@
 
 pub mod again;
 pub mod camera;
+pub mod counts;
 mod eye;
 pub mod filter;
 pub mod grow;
@@ -11,8 +12,10 @@ mod media;
 mod rays;
 pub mod sampling;
 pub mod scope;
+pub mod signature;
 pub mod sink;
 mod surface;
+pub mod thin;
 pub mod tree;
 
 use std::sync::Arc;

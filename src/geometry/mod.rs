@@ -38,6 +38,7 @@ use crate::scene::Scene;
 use compile::Primitives;
 use hierarchy::Hierarchy;
 pub use hierarchy::Stack;
+pub use placement::corners;
 use query::{Closest, Shadow};
 use surfaces::Surfaces;
 

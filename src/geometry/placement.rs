@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::scene::Placement;
+use crate::scene::{Placement, Shape, Solid};
 
 /// A placement ready for points, normals and rays.
 ///
@@ -101,6 +101,29 @@ fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
         2 => (-s, -c),
         _ => (-c, s),
     }
+}
+
+/// Corners around a solid that has some: its box in its own frame, in world space, at the beginning
+/// of its motion. `None` of an infinite plane and of what is made of many parts.
+pub fn corners(solid: &Solid) -> Option<Vec<DVec3>> {
+    let [min, max] = match &solid.shape {
+        Shape::Sphere { center, radius } => [*center - *radius, *center + *radius],
+        Shape::Box { min, max } => [*min, *max],
+        Shape::Polygon { points } => points
+            .iter()
+            .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[a, b], p| [a.min(*p), b.max(*p)]),
+        Shape::Plane { .. }
+        | Shape::Mesh { .. }
+        | Shape::Knot { .. }
+        | Shape::Sphereflake { .. } => return None,
+    };
+    let placed = Placed::new(&solid.placement);
+    let corner = |i: u32| {
+        let pick =
+            |bit: u32, axis: fn(DVec3) -> f64| axis(if i >> bit & 1 == 0 { min } else { max });
+        placed.point(DVec3::new(pick(0, |v| v.x), pick(1, |v| v.y), pick(2, |v| v.z)))
+    };
+    Some((0..8).map(corner).collect())
 }
 
 #[cfg(test)]

@@ -58,7 +58,7 @@ impl Default for Background {
 
 impl Default for Trace {
     fn default() -> Trace {
-        Trace { samples: 16, depth: 10, cutoff: 1.0 / 255.0, filter: Filter::Box }
+        Trace { samples: 16, depth: 10, cutoff: 1.0 / 255.0, filter: Filter::Box, adaptive: 0.0 }
     }
 }
 

@@ -133,7 +133,20 @@ pub struct Trace {
     pub cutoff: f32,
     /// How a pixel weighs what is around its centre; heeded with several samples.
     pub filter: Filter,
+    /// Adaptive sampling: how much cosines of neighbouring samples may differ where a pixel gets only
+    /// its first few, 0 … 1; 0 gives every pixel all samples.
+    pub adaptive: f32,
 }
+
+impl Trace {
+    /// Whether some pixels get fewer samples than others.
+    pub fn is_adaptive(&self) -> bool {
+        self.adaptive > 0.0 && self.samples > PILOTS
+    }
+}
+
+/// Samples that every pixel gets where sampling is adaptive.
+pub const PILOTS: u32 = 4;
 
 /// `[lights.NAME]`. A light that is off is traced all the same.
 #[derive(Clone, Debug, PartialEq)]

@@ -75,6 +75,8 @@ pub fn cost(session: &mut Session, path: &str) -> Option<Cost> {
         return Some(cost);
     }
     Some(match knob(session.scene(), &altered) {
+        // Which pixels get all samples may change with any branch that begins or ceases to live.
+        Some(_) if session.is_adaptive() => Cost::TraceAll,
         Some(knob) => knob.cost(session),
         None => cost_of(session, &altered),
     })

@@ -1,5 +1,6 @@
 //! One pixel in detail: its ray trees, its terms, and each term's share of its light.
 
+use super::pilots::sample_map;
 use super::trace::TraceError;
 use crate::color::Rgb;
 use crate::film::layout::{LANES, Layout};
@@ -95,21 +96,21 @@ pub fn pixel(
 ) -> Result<Inspection, TraceError> {
     let layout = Layout::new(scene.picture.size);
     let place = layout.place(pixel);
-    let grower = Grower::new(scene, geometry);
+    let map = sample_map(scene, geometry, place.tile, progress)?;
+    let grower = Grower::new(scene, geometry).with_map(map.as_ref());
     let mut trees = TileTrees::default();
     let at = (place.tile, place.block);
     let grown = grower.block(&mut grower.worker(), at, &mut trees, MOST_BYTES, progress);
     grown.map_err(|stop| TraceError::of(stop, MOST_BYTES))?;
-    let samples = scene.trace.samples;
-    let covered = layout.covered(place.tile, place.block);
-    let before = covered[..place.lane].iter().filter(|c| **c).count() as u32 * samples;
+    let counts = grower.counts(at);
+    let before = counts[..place.lane].iter().sum::<u32>();
     let mut walk = Walk { reader: trees.read(0), geometry, scene };
     for _ in 0..before {
         walk.sample();
     }
-    let samples_trees = (0..samples).map(|_| walk.sample()).collect();
+    let samples_trees = (0..counts[place.lane]).map(|_| walk.sample()).collect();
     let names = Names::new(geometry.materials(), scene.lights.len());
-    let (terms, light) = terms(scene, &trees, covered, place.lane, &names);
+    let (terms, light) = terms(scene, &trees, &counts, place.lane, &names);
     Ok(Inspection { light, samples: samples_trees, terms })
 }
 
@@ -117,14 +118,14 @@ pub fn pixel(
 fn terms(
     scene: &Scene,
     trees: &TileTrees,
-    covered: [bool; LANES],
+    counts: &[u32; LANES],
     lane: usize,
     names: &Names,
 ) -> (Vec<TermShare>, Rgb) {
     let peaks: Vec<_> = scene.materials.iter().map(|m| Some(Peak::of(m))).collect();
     let mut folder = Folder::default();
     folder.begin_tile();
-    folder.block(&mut trees.read(0), covered, scene.trace.samples, names);
+    folder.block(&mut trees.read(0), counts, names);
     let weight = 1.0 / scene.trace.samples as f32;
     let folded = folder.finish_tile(weight, &peaks);
     let mut values = TermValues::default();

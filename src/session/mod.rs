@@ -7,6 +7,7 @@ pub mod cost;
 pub mod inspect;
 pub mod live;
 pub mod part;
+mod pilots;
 pub mod plan;
 pub mod regrow;
 pub mod still;
@@ -24,6 +25,7 @@ use crate::fold::Names;
 use crate::fold::highlight::HighlightPower;
 use crate::fold::transport::Transport;
 use crate::forest::Forest;
+use crate::forest::counts::SampleMap;
 use crate::forest::grow::{Grower, RayCounts};
 use crate::forest::tree::TileTrees;
 use crate::geometry::Geometry;
@@ -74,6 +76,8 @@ pub struct Session {
     pool: Arc<ThreadPool>,
     geometry: Arc<Geometry>,
     forest: Forest,
+    /// The pixels' numbers of samples, where sampling is adaptive.
+    map: Option<Arc<SampleMap>>,
     transport: Transport,
     program: TermProgram,
     terms: TermValues,
@@ -144,6 +148,7 @@ impl Session {
             pool,
             geometry,
             forest: traced.forest,
+            map: traced.map,
             program: TermProgram::new(&traced.transport.trie),
             transport: traced.transport,
             terms: TermValues::default(),
@@ -206,7 +211,21 @@ impl Session {
         {
             return Work::Trace("there are so many lights or materials".into());
         }
-        self.plan(scene, change).map_or(Work::Shade, Work::Regrow)
+        let plan = self.plan(scene, change);
+        if self.map.is_some() && (plan.is_some() || self.redecides(scene, change)) {
+            return Work::Trace("adaptive sampling is decided again".into());
+        }
+        plan.map_or(Work::Shade, Work::Regrow)
+    }
+
+    /// Whether branches begin or cease to live, or lights are gone: then other pixels may need all
+    /// samples.
+    fn redecides(&mut self, scene: &Scene, change: &Change) -> bool {
+        let values = |scene: &Scene| FactorValues::new(scene).with_lights_at(&self.names.lights);
+        let before = self.terms.lives(&self.program, &values(&self.scene));
+        change.lights.len() != self.names.lights.len()
+            || change.terms
+                && before != self.terms.lives(&self.program, &self.factors_ahead(scene, change))
     }
 
     /// Grows what a plan names, and folds it.
@@ -440,7 +459,8 @@ impl Session {
     /// What grows the trees of the present scene, with what is kept of them.
     fn grower(&self) -> Grower<'_> {
         let iors = self.geometry.of_solids(&self.iors);
-        Grower::recalling(&self.scene, &self.geometry, self.keys.clone(), &iors)
+        let grower = Grower::recalling(&self.scene, &self.geometry, self.keys.clone(), &iors);
+        grower.with_map(self.map.as_deref())
     }
 
     /// The trees of one tile, read from what is kept of them, or grown again.
@@ -476,6 +496,19 @@ impl Session {
     /// The scene made ready for rays.
     pub fn geometry(&self) -> &Geometry {
         &self.geometry
+    }
+
+    /// Whether some pixels have fewer samples than others.
+    pub fn is_adaptive(&self) -> bool {
+        self.map.is_some()
+    }
+
+    /// The number of samples of a pixel.
+    pub fn samples_of(&self, pixel: [u32; 2]) -> u32 {
+        match &self.map {
+            Some(map) => map.of(self.transport.layout.place(pixel)),
+            None => self.transport.samples,
+        }
     }
 
     /// The kept trees.

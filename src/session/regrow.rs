@@ -10,7 +10,7 @@ use super::Session;
 use super::plan::{Plan, PlanTile};
 use super::trace::{LEAST_BLOCK_LIMIT, TraceError, claim};
 use crate::film::Frame;
-use crate::film::layout::{LANES, Layout, TILE_BLOCKS};
+use crate::film::layout::TILE_BLOCKS;
 use crate::fold::merge::Blocks;
 use crate::fold::stay::Stay;
 use crate::fold::transport::{Transport, TransportTile};
@@ -349,7 +349,7 @@ impl Regrow {
             let kept = old.map(|old| old.recall(block));
             let stopped = grower.block_again(worker, at, kept, grown, self.most(), progress);
             stopped.map_err(|stop| TraceError::of(stop, self.budget))?;
-            folder.block(&mut grown.read(0), self.covered(at), self.samples(), &self.names);
+            folder.block(&mut grown.read(0), &grower.counts(at), &self.names);
             trees.push_grown(grown, grower.keys());
         }
         let folded = folder.finish_tile(1.0 / self.samples() as f32, &self.peaks());
@@ -378,8 +378,8 @@ impl Regrow {
             let (at, kept) = ((plan.tile, block), (old, scope));
             let stopped = grower.block_part(worker, at, kept, again, self.most(), progress);
             stopped.map_err(|stop| TraceError::of(stop, self.budget))?;
-            let (reader, covered) = (&mut again.grown.read(0), self.covered(at));
-            folder.block_part(reader, covered, self.samples(), &self.names, (matrix, block));
+            let (reader, counts) = (&mut again.grown.read(0), grower.counts(at));
+            folder.block_part(reader, &counts, &self.names, (matrix, block));
         }
         let trees = std::mem::take(&mut again.kept);
         let folded = folder.finish_part(1.0 / self.samples() as f32, &self.peaks(), matrix);
@@ -392,10 +392,6 @@ impl Regrow {
 
     fn samples(&self) -> u32 {
         self.scene.trace.samples
-    }
-
-    fn covered(&self, (tile, block): (usize, usize)) -> [bool; LANES] {
-        Layout::new(self.scene.picture.size).covered(tile, block)
     }
 
     fn peaks(&self) -> Vec<Option<Peak>> {

@@ -8,11 +8,13 @@ use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
 
+use super::pilots::Pilots;
 use crate::film::layout::{Layout, TILE_BLOCKS};
 use crate::fold::transport::{Highlights, Transport, TransportTile};
 use crate::fold::trie::Trie;
 use crate::fold::{Folder, Names};
 use crate::forest::Forest;
+use crate::forest::counts::SampleMap;
 use crate::forest::grow::{Grower, MOST_CROSSED, RayCounts, Stop, Worker};
 use crate::forest::kept::KeptTrees;
 use crate::forest::sink::Discard;
@@ -120,6 +122,8 @@ pub struct Traced {
     pub forest: Forest,
     /// The matrix.
     pub transport: Transport,
+    /// The pixels' numbers of samples, where sampling is adaptive.
+    pub map: Option<Arc<SampleMap>>,
     /// How long it took and what it cast.
     pub report: TraceReport,
 }
@@ -208,9 +212,10 @@ pub(super) fn trace_tiles(
 ) -> Result<Traced, TraceError> {
     let start = Instant::now();
     let threads = pool.current_num_threads();
-    let job = Job::new((scene, tiles), geometry, threads, keep, reuse, progress);
+    let pilots = Pilots::trace((scene, &tiles), geometry, pool, keep.bytes, progress)?;
+    let job = Job::new((scene, tiles), (geometry, &pilots), threads, keep, reuse, progress);
     let outcomes = pool.broadcast(|_| job.work());
-    let mut report = TraceReport::default();
+    let mut report = TraceReport { rays: pilots.rays, ..TraceReport::default() };
     let threads = outcomes.len() as f64;
     for outcome in outcomes {
         let Outcome { grown: _, rays, nodes, folding } = outcome?;
@@ -222,7 +227,7 @@ pub(super) fn trace_tiles(
     let (forest, transport) = job.finish(pool)?;
     report.fold_seconds += merging.elapsed().as_secs_f64();
     report.seconds = start.elapsed().as_secs_f64();
-    Ok(Traced { forest, transport, report })
+    Ok(Traced { forest, transport, map: pilots.map, report })
 }
 
 /// The next tile that nobody works on.
@@ -234,6 +239,7 @@ pub(super) fn claim(next: &AtomicUsize, tiles: usize) -> Option<usize> {
 /// All that the workers of one trace share.
 struct Job<'a> {
     grower: Grower<'a>,
+    pilots: &'a Pilots,
     names: Names,
     layout: Layout,
     /// What is traced: the tile of every slot.
@@ -317,7 +323,7 @@ struct Outcome {
 impl<'a> Job<'a> {
     fn new(
         (scene, tiles): (&Scene, Vec<usize>),
-        geometry: &'a Geometry,
+        (geometry, pilots): (&'a Geometry, &'a Pilots),
         threads: usize,
         keep: Keep,
         reuse: Forest,
@@ -334,7 +340,8 @@ impl<'a> Job<'a> {
         let budget = usize::try_from(keep.bytes).unwrap_or(usize::MAX);
         Job {
             kept: keep.what,
-            grower: Grower::new(scene, geometry),
+            grower: Grower::new(scene, geometry).with_map(pilots.map.as_deref()),
+            pilots,
             names: Names::new(geometry.materials(), scene.lights.len()),
             layout,
             samples: scene.trace.samples,
@@ -362,7 +369,8 @@ impl<'a> Job<'a> {
             let mut old = self.take_old(place);
             let trees = old.as_mut().unwrap_or(&mut scratch);
             let tile = self.tiles[place];
-            let whole = self.tile(tile, &mut worker, &mut folder, trees, &mut outcome)?;
+            let pilots = self.pilots.tree(tile);
+            let whole = self.tile((tile, pilots), &mut worker, &mut folder, trees, &mut outcome)?;
             let folding = Instant::now();
             let transport = self.finish_tile(&mut folder);
             outcome.folding += folding.elapsed();
@@ -379,7 +387,7 @@ impl<'a> Job<'a> {
     /// Grows and folds the blocks of a tile; whether `trees` holds all of them in the end.
     fn tile(
         &self,
-        tile: usize,
+        (tile, pilots): (usize, Option<Arc<KeptTrees>>),
         worker: &mut Worker,
         folder: &mut Folder,
         trees: &mut KeptTrees,
@@ -393,14 +401,18 @@ impl<'a> Job<'a> {
             grown.clear();
             let at = (tile, block);
             let most = self.tile_limit.max(LEAST_BLOCK_LIMIT);
-            let stopped = self.grower.block(worker, at, grown, most, self.progress);
+            let known = pilots.as_ref().map(|pilots| pilots.recall(block));
+            let stopped = self.grower.block_again(worker, at, known, grown, most, self.progress);
             stopped.map_err(|stop| TraceError::of(stop, self.budget))?;
             outcome.nodes += grown.nodes.len() as u64;
             let folding = Instant::now();
-            let covered = self.layout.covered(tile, block);
-            folder.block(&mut grown.read(0), covered, self.samples, &self.names);
+            let counts = self.grower.counts(at);
+            folder.block(&mut grown.read(0), &counts, &self.names);
             outcome.folding += folding.elapsed();
             if whole {
+                if self.grower.is_adaptive() {
+                    trees.push_counts(&counts);
+                }
                 trees.push_grown(grown, self.grower.keys());
                 whole = trees.used_bytes() <= self.tile_limit;
             }

@@ -130,6 +130,15 @@ impl TermValues {
         program.frontier.iter().filter(lives).map(|f| f.id)
     }
 
+    /// Per step of the program whether what it stands for lives: branches of the seen path by the rule of
+    /// liveness, solids in front of lights by what they let through.
+    pub fn lives(&mut self, program: &TermProgram, factors: &FactorValues) -> Vec<bool> {
+        self.follow_paths(program, factors);
+        let paths = program.paths.iter().map(|step| self.weights[step.id as usize].depth != DEAD);
+        let solids = program.factors.iter().filter(|factor| factor.kind() == Kind::Shadow);
+        paths.chain(solids.map(|&factor| !factors.value(factor).is_black())).collect()
+    }
+
     fn follow_paths(&mut self, program: &TermProgram, factors: &FactorValues) {
         self.weights.resize(program.terms, PathWeight::EYE);
         self.weights[0] = PathWeight::EYE;

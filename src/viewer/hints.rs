@@ -24,6 +24,9 @@ pub(super) fn about(key: &str) -> &'static str {
         "size" => "Width and height in pixels; of a checker: side of a cube, in units of the scene",
         "exposure" => "Brightness of the picture in stops: +1 doubles it",
         "samples" => "Camera rays per pixel: more give smoother edges",
+        "adaptive" => {
+            "0: every pixel gets all samples; above: only pixels whose first samples differ more than this"
+        }
         "depth" => "Longest chain of reflections and refractions that is followed",
         "cutoff" => "Branches that weigh less than this are not followed",
         "color" => "Colour, linear Rec. 709",

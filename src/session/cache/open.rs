@@ -66,18 +66,20 @@ impl Session {
             geometry,
             geometry_seconds,
             forest,
+            map,
             transport,
             state,
             trace,
             report: _,
         } = cached;
-        let State { keys, keys_in_trees, lights, iors } = state;
+        let State { keys, keys_in_trees, lights, iors, counts: _ } = state;
         let mut session = Session {
             canvas: Canvas::new(scene.picture.size),
             scene: Arc::new(scene),
             options,
             pool,
             forest,
+            map,
             program: TermProgram::new(&transport.trie),
             transport,
             terms: TermValues::default(),

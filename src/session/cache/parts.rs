@@ -80,6 +80,8 @@ pub(super) struct State {
     pub(super) lights: Vec<u16>,
     /// Per material the index of refraction with which its nodes stand in the trees.
     pub(super) iors: Vec<f64>,
+    /// Where sampling is adaptive, the number of samples of every pixel, tile after tile.
+    pub(super) counts: Vec<u16>,
 }
 
 impl State {
@@ -90,18 +92,20 @@ impl State {
             keys_in_trees: session.keys_in_trees.clone(),
             lights: session.names.lights.clone(),
             iors: session.iors.clone(),
+            counts: session.map.as_ref().map_or(Vec::new(), |map| map.to_list()),
         }
     }
 }
 
 /// Writes the terms and what their factors stand for.
 pub(super) fn put_terms(trie: &Trie, state: &State, out: &mut Section) {
-    let State { keys, keys_in_trees, lights, iors } = state;
+    let State { keys, keys_in_trees, lights, iors, counts } = state;
     out.array(trie.nodes());
     out.array(keys);
     out.array(keys_in_trees);
     out.array(lights);
     out.array(iors);
+    out.array(counts);
 }
 
 /// Reads the terms and what their factors stand for.
@@ -112,6 +116,7 @@ pub(super) fn take_terms(from: &mut Source) -> Result<(Trie, State), Unsound> {
         keys_in_trees: from.array()?,
         lights: from.array()?,
         iors: from.array()?,
+        counts: from.array()?,
     };
     Ok((trie, state))
 }
@@ -164,9 +169,9 @@ pub(super) fn take_highlights(from: &mut Source) -> Result<Highlights, Unsound> 
     })
 }
 
-/// Writes a tile's trees.
+/// Writes a tile's trees; how many samples pixels have is written once for all.
 pub(super) fn put_trees(trees: &KeptTrees, out: &mut Section) {
-    let KeptTrees { blocks, hits, nodes, lights, crossings } = trees;
+    let KeptTrees { counts: _, blocks, hits, nodes, lights, crossings } = trees;
     out.array(blocks);
     out.array(hits);
     out.array(nodes);
@@ -174,9 +179,10 @@ pub(super) fn put_trees(trees: &KeptTrees, out: &mut Section) {
     out.array(crossings);
 }
 
-/// Reads a tile's trees.
-pub(super) fn take_trees(from: &mut Source) -> Result<KeptTrees, Unsound> {
+/// Reads a tile's trees, whose pixels have so many samples if they differ.
+pub(super) fn take_trees(from: &mut Source, counts: &[u16]) -> Result<KeptTrees, Unsound> {
     Ok(KeptTrees {
+        counts: counts.to_vec(),
         blocks: from.array()?,
         hits: from.array()?,
         nodes: from.array()?,

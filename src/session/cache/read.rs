@@ -14,6 +14,7 @@ use crate::film::layout::Layout;
 use crate::fold::transport::{Transport, TransportTile};
 use crate::fold::trie::Trie;
 use crate::forest::Forest;
+use crate::forest::counts::SampleMap;
 use crate::forest::kept::KeptTrees;
 use crate::geometry::Geometry;
 use crate::progress::Progress;
@@ -34,6 +35,8 @@ pub struct Cached {
     pub geometry_seconds: f64,
     /// Its trees, as far as they were kept and fit into the budget.
     pub forest: Forest,
+    /// The pixels' numbers of samples, where sampling is adaptive.
+    pub map: Option<Arc<SampleMap>>,
     /// The matrix, and the highlight lists that were kept and fit.
     pub transport: Transport,
     /// What else a session knows.
@@ -103,13 +106,19 @@ impl<'a> Reader<'a> {
         let geometry_seconds = start.elapsed().as_secs_f64();
         self.progress.begin((2 * numbers.tiles) as u64);
         let (trie, state) = self.terms()?;
+        let layout = Layout::new(self.scene.picture.size);
+        let samples = self.scene.trace.samples;
+        let map = SampleMap::from_list(layout, samples, &state.counts).map(Arc::new);
+        if map.is_some() != self.scene.trace.is_adaptive() {
+            return Err(Fault::damaged("the terms", "numbers of samples of another picture"));
+        }
         let tiles = self.each_tile(pool, |scratch, tile| self.tile(tile, lists, &trie, scratch))?;
         let keys = &state.keys_in_trees;
         let within = sound::Surroundings::new(&self.scene, &geometry, keys);
-        let trees: Vec<Option<Arc<KeptTrees>>> =
-            self.each_tile(pool, |scratch, tile| self.trees(tile, trees, &within, scratch))?;
-        let layout = Layout::new(self.scene.picture.size);
-        let samples = self.scene.trace.samples;
+        let trees: Vec<Option<Arc<KeptTrees>>> = self.each_tile(pool, |scratch, tile| {
+            let counts = map.as_ref().map_or(&[][..], |map| map.tile(tile));
+            self.trees((tile, counts), trees, &within, scratch)
+        })?;
         let report = CacheReport {
             file_bytes: self.file.length,
             plain_bytes: self.file.header.parts.iter().map(|part| part.plain).sum(),
@@ -121,6 +130,7 @@ impl<'a> Reader<'a> {
             geometry,
             geometry_seconds,
             forest: Forest { layout, samples, tiles: trees },
+            map,
             transport: Transport {
                 layout,
                 samples,
@@ -201,7 +211,7 @@ impl<'a> Reader<'a> {
     /// A tile's trees if they were kept and it is among the first `trees`.
     fn trees(
         &self,
-        tile: usize,
+        (tile, counts): (usize, &[u16]),
         trees: usize,
         within: &sound::Surroundings,
         scratch: &mut Scratch,
@@ -211,7 +221,7 @@ impl<'a> Reader<'a> {
             return Ok(None);
         }
         let trees = self.file.part(number, scratch, |source| {
-            let trees = parts::take_trees(source)?;
+            let trees = parts::take_trees(source, counts)?;
             within.trees(&trees, tile).map(|()| Arc::new(trees))
         })?;
         Ok(Some(trees))

@@ -3,7 +3,7 @@
 
 use super::codec::Unsound;
 use super::parts::State;
-use crate::film::layout::{Layout, TILE_BLOCKS};
+use crate::film::layout::{LANES, Layout, TILE_BLOCKS};
 use crate::fold::transport::{
     BlockStart, Frontier, FrontierMark, Plane, SPARSE_LANES, Single, TransportTile,
 };
@@ -63,7 +63,7 @@ fn is_of(factor: Factor, slots: &[usize]) -> bool {
 
 /// Whether a session may know this of a scene.
 pub(super) fn state(state: &State, scene: &Scene) -> Result<(), Unsound> {
-    let State { keys, keys_in_trees, lights, iors } = state;
+    let State { keys, keys_in_trees, lights, iors, counts: _ } = state;
     let each = [keys.len(), lights.len()] == [scene.lights.len(); 2];
     ensure(each && iors.len() == scene.materials.len(), "of another scene")?;
     let mut sorted = keys.clone();
@@ -169,14 +169,18 @@ impl Surroundings {
     /// Whether the trees of a tile are whole: whoever reads the samples of its pixels in order
     /// comes to the end of every array at once, and to nothing that the scene has not.
     pub(super) fn trees(&self, trees: &KeptTrees, tile: usize) -> Result<(), Unsound> {
-        let KeptTrees { blocks, hits, nodes, lights, crossings } = trees;
+        let KeptTrees { counts, blocks, hits, nodes, lights, crossings } = trees;
         let starts = blocks.split_last().filter(|_| trees.is_whole());
         let (end, starts) = starts.ok_or("not 64 blocks")?;
         let mut walk = Walk { trees, at: KeptStart::default(), depths: Vec::new() };
         for (block, start) in starts.iter().enumerate() {
             ensure(*start == walk.at, "a block starts elsewhere than its samples")?;
-            let pixels = self.layout.covered(tile, block).into_iter().filter(|lane| *lane).count();
-            walk.block(pixels * self.samples, self)?;
+            let covered = self.layout.covered(tile, block).into_iter().enumerate();
+            let count = |lane: usize| counts.get(block * LANES + lane);
+            let samples = covered
+                .filter(|(_, covered)| *covered)
+                .map(|(lane, _)| count(lane).map_or(self.samples, |&count| usize::from(count)));
+            walk.block(samples.sum(), self)?;
         }
         ensure(*end == walk.at, "the last block ends elsewhere than its samples")?;
         let KeptStart { word, node, light, crossing } = walk.at;

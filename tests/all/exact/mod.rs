@@ -1,5 +1,6 @@
 //! Held bit for bit: pictures after edits, histories, threads and memory budgets; and the floors.
 
+mod adaptive;
 mod badges;
 mod cache;
 mod classes;

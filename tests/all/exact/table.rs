@@ -172,6 +172,8 @@ pub(super) const ROWS: &[Row] = &[
         &[("0", Reshade), ("-30", Reshade), ("1", Reshade), ("30", Reshade), ("@", Reshade)],
     ),
     row("trace.samples", &[("1", Retrace), ("3", Retrace), ("@", Retrace)]),
+    // With so few samples every pixel has all.
+    row("trace.adaptive", &[("0.1", Nothing), ("1", Nothing), ("@", Nothing)]),
     row(
         "trace.filter",
         &[
@@ -382,6 +384,7 @@ pub(super) const LENS: &[Row] = &[
     row("camera.shutter", &[("0.4", Retrace), ("0", Retrace), ("1", Retrace), ("@", Retrace)]),
     row("trace.filter", &[("gaussian", Retrace), ("box", Retrace), ("@", Retrace)]),
     row("trace.samples", &[("1", Retrace), ("4", Retrace), ("@", Retrace)]),
+    row("trace.adaptive", &[("0.1", Retrace), ("0.02", Retrace), ("@", Retrace)]),
     row("solids.ball.motion.translate", VECTOR),
     row("solids.ring.motion.rotate_degrees", TURN),
     row("solids.ball.motion.rotate_degrees", TURN),

@@ -1,0 +1,128 @@
+//! Pixels that things thinner than a pixel pass through: the first few samples may miss them.
+
+use std::collections::HashSet;
+
+use glam::{DVec2, DVec3};
+
+use super::camera::View;
+use crate::geometry::corners;
+use crate::scene::Scene;
+
+/// A thing is thin if its picture's least width is less, in pixels: two samples of a pixel are about
+/// half a pixel apart.
+const THIN: f64 = 1.5;
+/// Marks for one thing at most: a wire across the largest picture.
+const MOST_MARKS: usize = 1 << 18;
+
+/// The pixels where spheres, boxes and polygons are seen whose picture is thinner than [`THIN`].
+///
+/// Those of a mesh, a knot or a sphereflake are not looked for; nor is what is seen in mirrors.
+#[derive(Clone, Debug, Default)]
+pub struct ThinPixels {
+    pixels: HashSet<[u32; 2]>,
+}
+
+impl ThinPixels {
+    /// Finds them.
+    pub fn of(scene: &Scene) -> ThinPixels {
+        let view = View::new(&scene.camera, scene.picture.size);
+        let mut pixels = HashSet::new();
+        for solid in &scene.solids {
+            let seen = corners(solid).and_then(|corners| project(&view, &corners));
+            if let Some(strip) = seen.and_then(|points| Strip::around(&points)) {
+                strip.mark(scene.picture.size, &mut pixels);
+            }
+        }
+        ThinPixels { pixels }
+    }
+
+    /// Whether a pixel is one of them.
+    pub fn contains(&self, pixel: [u32; 2]) -> bool {
+        self.pixels.contains(&pixel)
+    }
+}
+
+/// Where all of these points are seen, in pixels; `None` if one is not in front of the eye.
+fn project(view: &View, points: &[DVec3]) -> Option<Vec<DVec2>> {
+    points.iter().map(|&point| view.project(point).map(|seen| DVec2::from(seen.at))).collect()
+}
+
+/// A narrow strip of the picture, in pixels.
+struct Strip {
+    from: DVec2,
+    along: DVec2,
+    length: f64,
+    half_width: f64,
+}
+
+impl Strip {
+    /// The strip along the two points farthest apart that holds all points, if it is thin.
+    fn around(points: &[DVec2]) -> Option<Strip> {
+        let pairs = points.iter().flat_map(|&a| points.iter().map(move |&b| (a, b)));
+        let far = |pair: &(DVec2, DVec2)| pair.0.distance_squared(pair.1);
+        let (from, to) = pairs.max_by(|a, b| far(a).total_cmp(&far(b)))?;
+        let length = from.distance(to);
+        let along = if length > 0.0 { (to - from) / length } else { DVec2::X };
+        let off = |p: &DVec2| along.perp_dot(*p - from);
+        let low = points.iter().map(off).fold(0.0, f64::min);
+        let high = points.iter().map(off).fold(0.0, f64::max);
+        (high - low < THIN).then_some(Strip { from, along, length, half_width: high.max(-low) })
+    }
+
+    /// Adds the pixels whose square it may touch.
+    fn mark(&self, [width, height]: [u32; 2], pixels: &mut HashSet<[u32; 2]>) {
+        let Strip { from, along, length, half_width } = *self;
+        // Half of a pixel's diagonal, and half a step.
+        let reach = half_width + 1.0;
+        let steps = (2.0 * length).ceil().min(MOST_MARKS as f64) as usize;
+        for step in 0..=steps {
+            let at = from + along * (step as f64 / 2.0).min(length);
+            let side = |low: f64, most: u32| {
+                let clamp = |x: f64| x.clamp(0.0, f64::from(most)) as u32;
+                clamp((low - reach).floor())..clamp((low + reach).ceil())
+            };
+            for y in side(at.y, height) {
+                pixels.extend(side(at.x, width).map(|x| [x, y]));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Camera, Lens, Placement, Shape, Solid};
+
+    /// A bar of this thickness, in pixels of a picture of 64 × 48, across the picture's middle.
+    fn bar(thickness: f64) -> Scene {
+        let mut scene = Scene::default();
+        scene.picture.size = [64, 48];
+        scene.camera = Camera {
+            eye: DVec3::new(0.0, -10.0, 0.0),
+            target: DVec3::ZERO,
+            up: DVec3::Z,
+            lens: Lens::Parallel { height: 48.0 },
+            ..Camera::default()
+        };
+        let half = thickness / 2.0;
+        scene.solids = vec![Solid {
+            name: "bar".into(),
+            shape: Shape::Box {
+                min: DVec3::new(-20.0, -half, -half),
+                max: DVec3::new(20.0, half, half),
+            },
+            material: 0,
+            placement: Placement::default(),
+            motion: Default::default(),
+        }];
+        scene
+    }
+
+    #[test]
+    fn a_wire_is_found_along_its_length_and_a_beam_is_not() {
+        let thin = ThinPixels::of(&bar(0.1));
+        assert!((12..52).all(|x| thin.contains([x, 23]) && thin.contains([x, 24])));
+        assert!(!thin.contains([32, 30]) && !thin.contains([5, 24]));
+        assert!(ThinPixels::of(&bar(4.0)).pixels.is_empty());
+    }
+}

@@ -1,0 +1,148 @@
+//! Adaptive sampling: every pixel's first samples are traced, and say which pixels need all.
+
+use std::collections::BTreeSet;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::{Arc, Mutex};
+
+use rayon::ThreadPool;
+
+use super::trace::{LEAST_BLOCK_LIMIT, TraceError, claim};
+use crate::film::layout::{LANES, Layout, TILE_BLOCKS};
+use crate::forest::counts::{SampleMap, Signatures};
+use crate::forest::grow::{Grower, RayCounts, Worker};
+use crate::forest::kept::KeptTrees;
+use crate::forest::signature::Signature;
+use crate::forest::thin::ThinPixels;
+use crate::forest::tree::TileTrees;
+use crate::geometry::Geometry;
+use crate::progress::Progress;
+use crate::scene::Scene;
+
+/// What the first samples of some tiles' pixels gave; nothing where sampling is not adaptive.
+#[derive(Default)]
+pub(super) struct Pilots {
+    /// How many samples each pixel gets.
+    pub(super) map: Option<Arc<SampleMap>>,
+    /// Per tile of the picture the pilots' trees, as far as the memory reached: tracing all samples
+    /// takes their answers.
+    trees: Vec<Option<Arc<KeptTrees>>>,
+    /// Rays cast.
+    pub(super) rays: RayCounts,
+}
+
+/// The pilots of one tile.
+struct Found {
+    tile: usize,
+    signatures: Vec<Signature>,
+    trees: KeptTrees,
+}
+
+impl Pilots {
+    /// Traces the pilots of some tiles and of the tiles around them, and decides. At most half of
+    /// `bytes` holds their trees.
+    pub(super) fn trace(
+        (scene, tiles): (&Scene, &[usize]),
+        geometry: &Geometry,
+        pool: &ThreadPool,
+        bytes: u64,
+        progress: &Progress,
+    ) -> Result<Pilots, TraceError> {
+        if !scene.trace.is_adaptive() {
+            return Ok(Pilots::default());
+        }
+        let layout = Layout::new(scene.picture.size);
+        let around: Vec<usize> = with_neighbours(layout, tiles).into_iter().collect();
+        let map = SampleMap::of_pilots(layout);
+        let grower = Grower::new(scene, geometry).with_map(Some(&map));
+        let budget = usize::try_from(bytes / 2).unwrap_or(usize::MAX);
+        let (next, held) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        let signatures = Mutex::new(Signatures::new(layout));
+        let trees = Mutex::new(vec![None; layout.tiles()]);
+        let rays = pool.broadcast(|_| -> Result<RayCounts, TraceError> {
+            let mut worker = grower.worker();
+            while let Some(at) = claim(&next, around.len()) {
+                let found = grow(&grower, &mut worker, around[at], progress)?;
+                signatures.lock().expect("no worker panicked").put(found.tile, &found.signatures);
+                let kept = found.trees.trimmed();
+                if held.fetch_add(kept.bytes(), Relaxed) + kept.bytes() <= budget {
+                    trees.lock().expect("no worker panicked")[found.tile] = Some(Arc::new(kept));
+                }
+            }
+            Ok(worker.rays)
+        });
+        let mut sum = RayCounts::default();
+        for rays in rays {
+            sum += rays?;
+        }
+        let signatures = signatures.into_inner().expect("no worker panicked");
+        let map = Some(Arc::new(decide(scene, &signatures, tiles)));
+        let trees = trees.into_inner().expect("no worker panicked");
+        Ok(Pilots { map, trees, rays: sum })
+    }
+
+    /// The trees of a tile's pilots, if they are there.
+    pub(super) fn tree(&self, tile: usize) -> Option<Arc<KeptTrees>> {
+        self.trees.get(tile).cloned().flatten()
+    }
+}
+
+/// The numbers of samples of one tile's pixels, where sampling is adaptive.
+pub(super) fn sample_map(
+    scene: &Scene,
+    geometry: &Geometry,
+    tile: usize,
+    progress: &Progress,
+) -> Result<Option<SampleMap>, TraceError> {
+    if !scene.trace.is_adaptive() {
+        return Ok(None);
+    }
+    let layout = Layout::new(scene.picture.size);
+    let map = SampleMap::of_pilots(layout);
+    let grower = Grower::new(scene, geometry).with_map(Some(&map));
+    let (mut worker, mut signatures) = (grower.worker(), Signatures::new(layout));
+    for near in with_neighbours(layout, &[tile]) {
+        signatures.put(near, &grow(&grower, &mut worker, near, progress)?.signatures);
+    }
+    Ok(Some(decide(scene, &signatures, &[tile])))
+}
+
+fn decide(scene: &Scene, signatures: &Signatures, tiles: &[usize]) -> SampleMap {
+    let thin = ThinPixels::of(scene);
+    let is_thin = |pixel| thin.contains(pixel);
+    signatures.decide(tiles, scene.trace.samples, scene.trace.adaptive, is_thin)
+}
+
+/// Grows the pilots of a tile.
+fn grow(
+    grower: &Grower,
+    worker: &mut Worker,
+    tile: usize,
+    progress: &Progress,
+) -> Result<Found, TraceError> {
+    let mut trees = KeptTrees::default();
+    trees.clear();
+    let mut signatures = Vec::with_capacity(TILE_BLOCKS * LANES);
+    let mut grown = TileTrees::default();
+    for block in 0..TILE_BLOCKS {
+        grown.clear();
+        let at = (tile, block);
+        let stopped = grower.block(worker, at, &mut grown, LEAST_BLOCK_LIMIT, progress);
+        stopped.map_err(|stop| TraceError::of(stop, LEAST_BLOCK_LIMIT))?;
+        signatures.extend(grower.signatures(&grown, at));
+        trees.push_counts(&grower.counts(at));
+        trees.push_grown(&grown, grower.keys());
+    }
+    Ok(Found { tile, signatures, trees })
+}
+
+/// Some tiles and those that touch them.
+fn with_neighbours(layout: Layout, tiles: &[usize]) -> BTreeSet<usize> {
+    let [across, down] = layout.grid();
+    let near = |tile: usize| {
+        let (column, row) = (tile % across, tile / across);
+        let columns = column.saturating_sub(1)..=(column + 1).min(across - 1);
+        let rows = row.saturating_sub(1)..=(row + 1).min(down - 1);
+        rows.flat_map(move |row| columns.clone().map(move |column| row * across + column))
+    };
+    tiles.iter().flat_map(|&tile| near(tile)).collect()
+}

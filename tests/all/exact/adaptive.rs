@@ -1,0 +1,150 @@
+//! Adaptive sampling is a function of the scene: edits, threads, memory and files change no bit of it.
+
+use rayforest::film::Film;
+use rayforest::geometry::Geometry;
+use rayforest::progress::Progress;
+use rayforest::scene::{Scene, read};
+use rayforest::session::still::Still;
+use rayforest::session::{Class, Options, Session, cache};
+use rayon::ThreadPoolBuilder;
+
+use super::{PLENTY, assert_same_picture, film_difference, open, set, shipped};
+
+/// A shipped scene with adaptive sampling.
+fn adaptive(name: &str, size: [u32; 2]) -> Scene {
+    let mut scene = shipped(name, size, 16);
+    set(&mut scene, "trace.adaptive", "0.1");
+    scene
+}
+
+#[test]
+fn threads_memory_and_parts_change_no_bit() {
+    for name in ["whitted", "glass"] {
+        let scene = adaptive(name, [130, 70]);
+        let whole = open(&scene, 2);
+        let share = refined_share(&whole, 16);
+        assert!(share > 0.05 && share < 0.99, "{name}: {share} of the pixels have all samples");
+        assert_same_picture(&whole, &open(&scene, 1), "one thread");
+        let matrix = whole.kept_bytes() - whole.forest().bytes() as u64;
+        let options = Options { threads: 2, memory: matrix + whole.forest().bytes() as u64 / 3 };
+        let small = Session::open(scene.clone(), options, &Progress::default()).unwrap();
+        assert!(small.forest().released() > 0);
+        assert_same_picture(&whole, &small, "released trees");
+        let pool = ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+        let geometry = Geometry::build(&scene, &Progress::default()).unwrap();
+        let still = Still { scene: &scene, geometry: &geometry, pool: &pool, memory: PLENTY };
+        let (film, _) = still.film(&Progress::default()).unwrap();
+        assert_eq!(film_difference(&film, &whole.film()), None, "{name}: a still");
+        let (tile, _) = still.light(&[4], &Progress::default()).unwrap();
+        let blocks = whole.film().blocks;
+        assert!(tile[..] == blocks[4 * 64..5 * 64], "{name}: one tile alone");
+    }
+}
+
+#[test]
+fn every_edit_gives_what_a_fresh_trace_gives() {
+    let mut session = open(&adaptive("glass", [96, 64]), 2);
+    for (path, value, class) in [
+        ("materials.ruby.color", "[0.9, 0.4, 0.4]", Class::Reshade),
+        ("materials.ruby.shininess", "33", Class::Refold),
+        ("materials.ruby.reflect", "0", Class::Retrace),
+        ("materials.ruby.reflect", "0.3", Class::Retrace),
+        ("materials.ruby.transmit", "0", Class::Retrace),
+        ("materials.ruby.transmit", "0.8", Class::Retrace),
+        ("lights.0.on", "false", Class::Reshade),
+        ("trace.depth", "2", Class::Retrace),
+    ] {
+        let path = path.replace("lights.0", &format!("lights.{}", session.scene().lights[0].name));
+        let mut scene = session.scene().clone();
+        set(&mut scene, &path, value);
+        let report = session.edit(scene.clone(), &Progress::default()).unwrap();
+        assert_eq!(report.class, class, "{path} = {value}");
+        assert_same_picture(&session, &open(&scene, 2), &format!("{path} = {value}"));
+    }
+    let mut scene = session.scene().clone();
+    scene.lights.pop();
+    session.edit(scene.clone(), &Progress::default()).unwrap();
+    assert_same_picture(&session, &open(&scene, 2), "a light less");
+}
+
+#[test]
+fn a_kept_cache_opens_without_a_ray() {
+    let scene = adaptive("whitted", [70, 50]);
+    let session = open(&scene, 2);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("kept.rayforest");
+    for trees in [false, true] {
+        cache::write(&session, &path, trees, &Progress::default()).unwrap();
+        let options = Options { threads: 2, memory: PLENTY };
+        let opened = Session::open_cached(scene.clone(), &path, options, &Progress::default());
+        let (mut opened, report) = opened.unwrap();
+        assert_eq!(report.edit.rays.total(), 0);
+        assert_same_picture(&opened, &session, "opened");
+        assert_eq!(opened.is_adaptive(), session.is_adaptive());
+        let mut redder = scene.clone();
+        set(&mut redder, "materials.mirror.color", "[1, 0.2, 0.2]");
+        opened.edit(redder.clone(), &Progress::default()).unwrap();
+        assert_same_picture(&opened, &open(&redder, 1), "edited");
+    }
+}
+
+/// Root of the mean squared difference of two pictures.
+fn error(a: &Film, b: &Film) -> f64 {
+    let [width, height] = a.layout.size;
+    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+    let square = |pixel| {
+        let (a, b) = (a.pixel(pixel).0, b.pixel(pixel).0);
+        a.iter().zip(b).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>() / 3.0
+    };
+    (pixels.map(square).sum::<f64>() / f64::from(width * height)).sqrt()
+}
+
+#[test]
+fn fewer_rays_are_spent_where_they_matter() {
+    let truth = open(&shipped("whitted", [192, 128], 128), 2).film();
+    let uniform = open(&shipped("whitted", [192, 128], 16), 2);
+    let few = open(&shipped("whitted", [192, 128], 4), 2);
+    let adaptive = open(&adaptive("whitted", [192, 128]), 2);
+    let rays = |session: &Session| session.trace_report().rays.total() as f64;
+    assert!(rays(&adaptive) < 0.85 * rays(&uniform));
+    let [coarse, fine, own] = [&few, &uniform, &adaptive].map(|s| error(&s.film(), &truth));
+    assert!(own < 1.2 * fine && own < 0.7 * coarse, "errors {coarse} {fine} {own}");
+}
+
+/// A white bar before black, seen in parallel: as wide as a tenth of a pixel, at an angle.
+fn wire(adaptive: f32) -> Scene {
+    let text = format!(
+        "version = 1\nambient_light = 1\n[picture]\nsize = [96, 64]\n[camera]\neye = [0, 0, 50]\n\
+         target = [0, 0, 0]\nup = [0, 1, 0]\nheight = 64\n[background]\ncolor = 0\n\
+         [trace]\nsamples = 1024\nadaptive = {adaptive}\n[materials.white]\nambient = 1\n\
+         [solids.wire]\nbox = {{ min = [-40, -0.05, -0.05], max = [40, 0.05, 0.05] }}\n\
+         rotate_degrees = [0, 0, 17]\nmaterial = \"white\"\n"
+    );
+    read::text(&text, std::path::Path::new("wire.toml"))
+        .unwrap_or_else(|e| panic!("a sound scene: {e}"))
+}
+
+#[test]
+fn a_wire_of_a_tenth_of_a_pixel_keeps_its_light_and_has_no_gaps() {
+    let session = open(&wire(0.1), 2);
+    let film = session.film();
+    let [width, height] = film.layout.size;
+    let light = |x: u32| (0..height).map(|y| f64::from(film.pixel([x, y]).0[0])).sum::<f64>();
+    let columns: Vec<f64> = (0..width).map(light).collect();
+    // Inside of its ends; a column shows its width over the cosine of its angle.
+    let inside = &columns[12..84];
+    let mean = inside.iter().sum::<f64>() / inside.len() as f64;
+    let truth = 0.1 / libm::cos(17f64.to_radians());
+    assert!((mean / truth - 1.0).abs() < 0.03, "{mean} for {truth}");
+    let gap = inside.windows(2).any(|pair| pair == [0.0, 0.0]);
+    assert!(!gap, "two columns without any of it");
+    assert!(refined_share(&session, 1024) < 0.2, "only the wire gets all samples");
+}
+
+/// The share of the pixels that have so many samples.
+fn refined_share(session: &Session, samples: u32) -> f64 {
+    let [width, height] = session.scene().picture.size;
+    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+    let all = pixels.filter(|&pixel| session.samples_of(pixel) == samples).count();
+    all as f64 / f64::from(width * height)
+}
