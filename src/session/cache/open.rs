@@ -71,7 +71,7 @@ impl Session {
             trace,
             report: _,
         } = cached;
-        let State { keys, keys_in_trees, lights, iors } = state;
+        let State { keys, keys_in_trees, lights, iors, lobes } = state;
         let mut session = Session {
             canvas: Canvas::new(scene.picture.size),
             scene: Arc::new(scene),
@@ -86,6 +86,7 @@ impl Session {
             keys_in_trees,
             names: Names { materials: geometry.materials().to_vec(), lights },
             iors,
+            lobes,
             trace,
             geometry_seconds,
             geometry: Arc::new(geometry),
