@@ -117,6 +117,7 @@ fn end_text(branch: Branch) -> &'static str {
         Branch::Weight => "ends: weight below trace.cutoff",
         Branch::Faint => "ends: Fresnel leaves less than trace.cutoff",
         Branch::Depth => "ends: trace.depth",
+        Branch::Astray => "is black: the blurred ray went to the wrong side of the surface",
         Branch::Grown | Branch::Absent => "",
     }
 }

@@ -14,7 +14,7 @@ use crate::scene::path::{Parameter, parameters, set};
 use crate::scene::range::Kind;
 use crate::scene::read::{Meshes, text_with};
 use crate::scene::write::{self, tree};
-use crate::scene::{Lens, Light, LightPlace, Material, Paint, Scene, Shape, Solid};
+use crate::scene::{Area, Lens, Light, LightPlace, Material, Paint, Scene, Shape, Solid};
 use crate::scene::{check, fields};
 
 /// SplitMix64.
@@ -249,7 +249,11 @@ fn restructure(scene: &mut Scene, random: &mut Random) {
         3 if light < scene.lights.len() => {
             scene.lights[light].place = match scene.lights[light].place {
                 LightPlace::Point(_) => LightPlace::Direction(DVec3::new(0.1, -0.0, 1.0)),
-                LightPlace::Direction(_) => LightPlace::Point(DVec3::X),
+                LightPlace::Direction(_) => LightPlace::named("spot"),
+                LightPlace::Spot { .. } => LightPlace::named("area"),
+                LightPlace::Area(Area::Rectangle { .. }) => LightPlace::of_kind("disc"),
+                LightPlace::Area(Area::Disc { .. }) => LightPlace::of_kind("sphere"),
+                LightPlace::Area(Area::Sphere { .. }) => LightPlace::Point(DVec3::X),
             };
         }
         4 => insert_material(scene, material, Material { ior: 1.25, ..Material::new(name) }),

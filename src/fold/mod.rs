@@ -307,8 +307,9 @@ impl Folder {
 
     #[inline(always)]
     fn branch(&mut self, (path, weight): (u32, f32), branch: Branch, factor: Factor, lane: usize) {
-        // No parameter brings a faint branch to life: it is no term of the frontier.
-        if matches!(branch, Branch::Absent | Branch::Faint) {
+        // No parameter brings a faint branch to life, or one that went astray: they are no terms of the
+        // frontier.
+        if matches!(branch, Branch::Absent | Branch::Faint | Branch::Astray) {
             return;
         }
         let child = self.find(path, factor);

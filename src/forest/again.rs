@@ -1,17 +1,20 @@
 //! Grows again the part of kept trees that a scope names, and leaves the rest alone.
 
 use fearless_simd::{Simd, dispatch};
+use glam::DVec3;
 
-use super::grow::{Arrival, Grower, Known, Limits, Pending, Stop, Worker, branch, known};
+use super::grow::{Arrival, Grower, Known, Limits, Pending, Stop, Worker, blurred, branch, known};
 use super::kept::{KeptLight, KeptNode, KeptTrees, Recall, Recalled};
 use super::sampling::Sample;
 use super::scope::{At, Scope};
+use super::sequence::branch_path;
+use super::shadow::Site;
 use super::sink::{Side, Sink};
 use super::tree::{BLOCKED, Branch, Ends, LightHit, Node, TileTrees, weights};
 use crate::film::layout::{LANES, Place};
 use crate::geometry::Hit;
 use crate::progress::Progress;
-use crate::scene::factor::{Factor, Kind, PathWeight};
+use crate::scene::factor::{End, Factor, Kind, PathWeight};
 
 /// Trees that are grown again in part.
 #[derive(Default)]
@@ -33,8 +36,8 @@ struct Next {
     folded: Branch,
     /// In what is kept.
     kept: Branch,
-    /// How its ray goes on, and where it stands in the scope.
-    ray: Option<(PathWeight, Known, At)>,
+    /// How its ray goes on and where to, and where it stands in the scope.
+    ray: Option<(PathWeight, DVec3, Known, At)>,
 }
 
 impl Again {
@@ -188,6 +191,7 @@ impl Grower<'_> {
                 continue;
             }
             worker.media.clear();
+            worker.sample = at;
             let ray = weighed.unwrap_or_else(|| self.eye_ray(eye, at, worker, sink));
             worker.pending.push(Pending::eye(ray, Known::Hit, Scope::EYE));
             while let Some(next) = worker.pending.pop() {
@@ -238,7 +242,7 @@ impl Grower<'_> {
         (kept, scope): (&mut Recall<'_>, &Scope),
         sink: &mut Again,
     ) -> Result<(), Stop> {
-        let mut recalled = kept.node();
+        let recalled = kept.node();
         let KeptNode { t, primitive, lights: _, ends } = *recalled.node;
         let Arrival { at, surface, crossing, eta: _ } =
             self.arrive(worker, from, Hit { t, primitive });
@@ -246,9 +250,23 @@ impl Grower<'_> {
         let [mirrored, passed] = weights(fresnel);
         let [to_mirrored, to_passed] = self.states(scope, from.scope, recalled.node);
         let mirror = if ends.total() { Kind::TotalReflect } else { Kind::Reflect };
-        let next = |kind, by, before, to| self.next(from, (kind, at.material), by, (before, to));
-        let reflected = next(mirror, mirrored, ends.reflected(), to_mirrored);
-        let transmitted = next(Kind::Transmit, passed, ends.transmitted(), to_passed);
+        let ways = [false, true].map(|transmitted| branch_path(from.way, transmitted));
+        let [gloss, translucency] = self.lobes[at.solid as usize];
+        let (sample, up) = (worker.sample, surface.geometric);
+        let reflected = self.next(
+            from,
+            (mirror, at.material, mirrored),
+            (ends.reflected(), to_mirrored),
+            |path| blurred(path, surface.reflect(), (gloss, up), sample, ways[0]),
+        );
+        // There is a ray: only a file can say of a total reflection that it is none.
+        let sharp = surface.refracted.unwrap_or(from.ray.direction);
+        let transmitted = self.next(
+            from,
+            (Kind::Transmit, at.material, passed),
+            (ends.transmitted(), to_passed),
+            |path| blurred(path, sharp, (translucency, -up), sample, ways[1]),
+        );
         let of = |branch: fn(&Next) -> Branch| {
             Ends::new(branch(&reflected), branch(&transmitted), ends.total())
         };
@@ -258,13 +276,16 @@ impl Grower<'_> {
             Node { t, primitive, material, lights, slot, whole: false, ends: folded, fresnel };
         let name = sink.part(node, of(|next| next.kept));
         if scope.has_lights(from.scope) {
-            for (light, place) in self.lights.iter().enumerate() {
-                let key = self.keys[light];
-                if scope.has_light(light) {
-                    let (met, light) = (recalled.light(key), (light as u16, place));
-                    self.light(simd, worker, (&at, &surface), light, met, sink)?;
-                } else if let Some(record) = recalled.record(key) {
-                    sink.record(light as u16, record);
+            let site = Site { at: &at, surface: &surface, path: from.way };
+            let mut recalled = Some(recalled);
+            for light in 0..self.lamps.len() as u16 {
+                if scope.has_light(light.into()) {
+                    self.light(simd, worker, &site, light, &mut recalled, sink)?;
+                    continue;
+                }
+                let key = self.keys[usize::from(light)];
+                while let Some(record) = recalled.as_mut().and_then(|r| r.record(key)) {
+                    sink.record(light, record);
                 }
             }
         } else {
@@ -275,48 +296,55 @@ impl Grower<'_> {
             (ray, Some(leaving))
         };
         let mut queue = |next: Next, side, by: f32, medium| {
-            let Some((path, known, scope)) = next.ray else { return };
-            let (ray, leaving) = match (known, side) {
+            let Some((path, direction, known, scope)) = next.ray else { return };
+            let (ray, leaving) = match known {
                 // The direction of a ray that is not followed is of no use.
-                (Known::Kept | Known::Dropped, _) => (from.ray, None),
-                (_, Side::Reflected) => spawn(surface.reflect()),
-                // There is one: only a file can say of a total reflection that it is none.
-                (_, Side::Transmitted) => spawn(surface.refracted.unwrap_or(from.ray.direction)),
+                Known::Kept | Known::Dropped => (from.ray, None),
+                _ => spawn(direction),
             };
+            let way = ways[usize::from(side == Side::Transmitted)];
             let (parent, geometric) = (Some((name, side)), by * from.geometric);
-            let next = Pending { ray, leaving, path, geometric, parent, medium, known, scope };
+            let next = Pending { ray, leaving, way, path, geometric, parent, medium, known, scope };
             worker.pending.push(next);
         };
         queue(transmitted, Side::Transmitted, passed, crossing.behind);
         queue(reflected, Side::Reflected, mirrored, from.medium);
         Ok(())
     }
-    /// What becomes of a branch that ended as `before` says and now stands at `to`.
+
+    /// What becomes of a branch that ended as `before` says and now stands at `to`; `aimed` gives the
+    /// direction of its ray.
     #[inline(always)]
     fn next(
         &self,
         from: &Pending,
-        (kind, material): (Kind, u16),
-        by: f32,
+        (kind, material, by): (Kind, u16, f32),
         (before, to): (Branch, At),
+        aimed: impl Fn(PathWeight) -> Result<(PathWeight, DVec3), End>,
     ) -> Next {
-        let grown = before == Branch::Grown;
+        let (grown, idle) = (before == Branch::Grown, from.ray.direction);
         if to == At::NONE {
-            let ray = grown.then_some((from.path, Known::Kept, to));
+            let ray = grown.then_some((from.path, idle, Known::Kept, to));
             return Next { folded: Branch::Absent, kept: before, ray };
         }
         let followed = self.follow(from, (kind, material), by * from.geometric);
         if to != At::ALL {
             // Whether it is alive today is not asked: what is kept of it stays.
-            let ray = grown.then_some((followed.unwrap_or(from.path), Known::Hit, to));
+            let ray = grown.then(|| {
+                let path = followed.unwrap_or(from.path);
+                let direction = aimed(path).map_or(idle, |(_, direction)| direction);
+                (path, direction, Known::Hit, to)
+            });
             let folded = if grown { Branch::Grown } else { Branch::Absent };
             return Next { folded, kept: before, ray };
         }
+        let followed = followed.and_then(aimed);
+        let end = branch(&followed);
         let ray = match (followed, known(Some(before), true, followed.is_ok())) {
-            (Ok(path), known) => Some((path, known, to)),
-            (Err(_), Known::Dropped) => Some((from.path, Known::Dropped, to)),
+            (Ok((path, direction)), known) => Some((path, direction, known, to)),
+            (Err(_), Known::Dropped) => Some((from.path, idle, Known::Dropped, to)),
             _ => None,
         };
-        Next { folded: branch(followed), kept: branch(followed), ray }
+        Next { folded: end, kept: end, ray }
     }
 }

@@ -6,21 +6,24 @@ use glam::DVec3;
 use super::camera::View;
 use super::counts::SampleMap;
 use super::eye::Eye;
-use super::kept::{Met, Recall, Recalled};
-use super::lobe::{self, Lit, Lobe};
+use super::kept::{Recall, Recalled};
+use super::lamp::Lamp;
 use super::media::{Crossing, Media};
 pub use super::rays::RayCounts;
-use super::sampling::Sample;
+use super::sampling::{Effect, ROOT_PATH, Sample};
 use super::scope::At;
+use super::sequence::branch_path;
+use super::shadow::Site;
 use super::sink::{Side, Sink};
 use super::surface::Surface;
-use super::tree::{BLOCKED, Branch, Ends, LightHit, NO_FRESNEL, Node, weights};
+use super::tree::{BEHIND, Branch, Ends, NO_FRESNEL, Node, weights};
+use super::{Before, blur};
 use crate::film::layout::{LANES, Layout, Place};
 use crate::geometry::{Geometry, Hit, Interaction, Leaving, Ray, Stack};
 use crate::progress::{Cancelled, Progress};
 use crate::scene::factor::{End, Factor, FactorValues, Kind, PathWeight};
-use crate::scene::model::Model;
-use crate::scene::{LightPlace, Material, Scene};
+use crate::scene::model::{Lobes, Model};
+use crate::scene::{Material, Scene};
 
 /// Why growing stopped before its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,7 +43,7 @@ impl From<Cancelled> for Stop {
 }
 
 /// Transparent surfaces that a shadow ray may cross.
-pub const MOST_CROSSED: usize = BLOCKED as usize - 1;
+pub const MOST_CROSSED: usize = BEHIND as usize - 1;
 
 /// All that tracing reads, made once per trace and shared by its workers.
 pub struct Grower<'a> {
@@ -48,17 +51,18 @@ pub struct Grower<'a> {
     values: FactorValues,
     /// Per solid.
     pub(super) opaque: Vec<bool>,
-    /// Directions are of length 1.
-    pub(super) lights: Vec<LightPlace>,
+    pub(super) lamps: Vec<Lamp>,
     /// Per light the key of its records in kept trees.
     pub(super) keys: Vec<u16>,
     /// Per solid.
     iors: Vec<f64>,
-    models: Vec<Model>,
+    /// Per solid.
+    pub(super) lobes: Vec<Lobes>,
+    pub(super) models: Vec<Model>,
     /// Per material, whether Fresnel weighs its branches.
     weighing: Vec<bool>,
-    /// Per solid the index of refraction with which the kept trees were grown.
-    iors_before: Vec<f64>,
+    /// With what the kept trees were grown.
+    before: Before,
     pub(super) view: View,
     /// Of a scene whose camera rays are not only the pinhole's within their pixels.
     pub(super) eye: Option<Eye>,
@@ -73,8 +77,10 @@ pub struct Grower<'a> {
 pub struct Worker {
     pub(super) stack: Stack,
     pub(super) pending: Vec<Pending>,
-    crossed: Vec<u32>,
+    pub(super) crossed: Vec<u32>,
     pub(super) media: Media,
+    /// The one that is grown.
+    pub(super) sample: Sample,
     /// Rays that this worker cast: what kept trees answer is not cast.
     pub rays: RayCounts,
 }
@@ -108,6 +114,8 @@ impl Limits<'_> {
 pub(super) struct Pending {
     pub(super) ray: Ray,
     pub(super) leaving: Option<Leaving>,
+    /// The hash of its string of reflections and transmissions.
+    pub(super) way: u32,
     pub(super) path: PathWeight,
     /// Product of Fresnel's reflectances on the path.
     pub(super) geometric: f32,
@@ -125,6 +133,7 @@ impl Pending {
         Pending {
             ray,
             leaving: None,
+            way: ROOT_PATH,
             path: PathWeight::EYE,
             geometric: 1.0,
             parent: None,
@@ -169,13 +178,11 @@ impl<'a> Grower<'a> {
     /// Prepares to trace `scene`, of which `geometry` was built.
     pub fn new(scene: &Scene, geometry: &'a Geometry) -> Grower<'a> {
         let keys = (0..).take(scene.lights.len()).collect();
-        let iors: Vec<f64> = scene.materials.iter().map(|m| m.ior).collect();
-        Grower::recalling(scene, geometry, keys, &geometry.of_solids(&iors))
+        Grower::recalling(scene, geometry, keys, &Before::of(scene, geometry))
     }
 
     /// The same, where kept trees may answer in place of rays: `keys` are the keys of the lights'
-    /// records in them, and `iors_before` has for every solid the index of refraction with which
-    /// they were grown.
+    /// records in them, and `before` tells with what they were grown.
     ///
     /// Kept trees answer for the same ray, found by the same path through the same media; a shadow
     /// ray's answer stands as long as its blocker is opaque.
@@ -183,20 +190,21 @@ impl<'a> Grower<'a> {
         scene: &Scene,
         geometry: &'a Geometry,
         keys: Vec<u16>,
-        iors_before: &[f64],
+        before: &Before,
     ) -> Grower<'a> {
         let values = FactorValues::new(scene);
-        let iors: Vec<f64> = scene.materials.iter().map(|m| m.ior).collect();
+        let Before { iors, lobes } = Before::of(scene, geometry);
         Grower {
             geometry,
             opaque: geometry.of_solids(&values.opaque()),
             values,
-            lights: scene.lights.iter().map(|l| with_unit_direction(&l.place)).collect(),
+            lamps: scene.lights.iter().map(Lamp::new).collect(),
             models: scene.materials.iter().map(|m| m.model).collect(),
             weighing: scene.materials.iter().map(Material::weighs_branches).collect(),
             keys,
-            iors: geometry.of_solids(&iors),
-            iors_before: iors_before.to_vec(),
+            iors,
+            lobes,
+            before: before.clone(),
             view: View::new(&scene.camera, scene.picture.size),
             eye: Eye::of(scene),
             layout: Layout::new(scene.picture.size),
@@ -218,6 +226,7 @@ impl<'a> Grower<'a> {
             pending: Vec::new(),
             crossed: Vec::new(),
             media: Media::default(),
+            sample: Sample { pixel: [0, 0], index: 0 },
             rays: RayCounts::default(),
         }
     }
@@ -274,7 +283,8 @@ impl<'a> Grower<'a> {
         let known = kept.as_ref().map_or(0, |kept| kept.count(place.lane).unwrap_or(self.samples));
         let eye = self.pixel_eye(pixel, count);
         for index in 0..count {
-            let ray = self.eye_ray(eye, Sample { pixel, index }, worker, sink);
+            worker.sample = Sample { pixel, index };
+            let ray = self.eye_ray(eye, worker.sample, worker, sink);
             let kept = if index < known { &mut *kept } else { &mut None };
             self.sample(simd, worker, ray, kept, sink, limits)?;
         }
@@ -381,8 +391,20 @@ impl<'a> Grower<'a> {
         let [mirrored, passed] = weights(fresnel);
         let follow = |kind, by: f32| self.follow(from, (kind, at.material), by * from.geometric);
         let reflected = follow(if total { Kind::TotalReflect } else { Kind::Reflect }, mirrored);
-        let transmitted = (!total).then(|| follow(Kind::Transmit, passed));
-        let ends = Ends::new(branch(reflected), transmitted.map_or(Branch::Absent, branch), total);
+        let transmitted = refracted.map(|sharp| (sharp, follow(Kind::Transmit, passed)));
+        let ways = [false, true].map(|transmitted| branch_path(from.way, transmitted));
+        let [gloss, translucency] = self.lobes[at.solid as usize];
+        let (sample, up) = (worker.sample, surface.geometric);
+        let reflected = reflected
+            .and_then(|path| blurred(path, surface.reflect(), (gloss, up), sample, ways[0]));
+        let transmitted = transmitted.map(|(sharp, path)| {
+            path.and_then(|path| blurred(path, sharp, (translucency, -up), sample, ways[1]))
+        });
+        let ends = Ends::new(
+            branch(&reflected),
+            transmitted.as_ref().map_or(Branch::Absent, branch),
+            total,
+        );
         let (material, slot) = (at.material, at.slot);
         let node = Node {
             t: hit.t,
@@ -395,54 +417,37 @@ impl<'a> Grower<'a> {
             fresnel,
         };
         let name = sink.node(node);
-        for (light, place) in self.lights.iter().enumerate() {
-            let light = (light as u16, place);
-            let met = recalled.as_mut().and_then(|r| r.light(self.keys[light.0 as usize]));
-            self.light(simd, worker, (&at, &surface), light, met, sink)?;
+        let site = Site { at: &at, surface: &surface, path: from.way };
+        for light in 0..self.lamps.len() as u16 {
+            self.light(simd, worker, &site, light, &mut recalled, sink)?;
         }
         let ends = recalled.map(|r| r.node.ends);
-        let mut queue = |direction, (path, by): (PathWeight, f32), side, medium, known| {
-            let (ray, leaving) = match known {
-                // The direction of a ray that is not followed is of no use.
-                Known::Dropped => (from.ray, None),
-                _ => {
+        let mut queue = |followed, by: f32, side, medium, known| {
+            // The ray of what is not followed is of no use.
+            let (path, ray, leaving) = match followed {
+                Ok((path, direction)) => {
                     let (ray, leaving) = self.geometry.spawn(&at, direction);
-                    (ray, Some(leaving))
+                    (path, ray, Some(leaving))
                 }
+                Err(_) if known == Known::Dropped => (from.path, from.ray, None),
+                Err(_) => return,
             };
+            let way = ways[usize::from(side == Side::Transmitted)];
             let (parent, geometric) = (Some((name, side)), by * from.geometric);
             let scope = At::ALL;
-            worker.pending.push(Pending {
-                ray,
-                leaving,
-                path,
-                geometric,
-                parent,
-                medium,
-                known,
-                scope,
-            });
+            let next = Pending { ray, leaving, way, path, geometric, parent, medium, known, scope };
+            worker.pending.push(next);
         };
-        let same = ends.is_some() && self.refracts_as_before(&crossing, eta);
-        let through = transmitted.and_then(Result::ok).zip(refracted);
-        match (through, known(ends.map(Ends::transmitted), same, through.is_some())) {
-            (Some((path, direction)), known) => {
-                queue(direction, (path, passed), Side::Transmitted, crossing.behind, known);
-            }
-            (None, Known::Dropped) => {
-                queue(at.point, (from.path, 0.0), Side::Transmitted, from.medium, Known::Dropped);
-            }
-            _ => {}
+        let before = self.before.lobes[at.solid as usize];
+        if let Some(transmitted) = transmitted {
+            let same = before[1] == translucency && self.refracts_as_before(&crossing, eta);
+            let known = known(ends.map(Ends::transmitted), same, transmitted.is_ok());
+            queue(transmitted, passed, Side::Transmitted, crossing.behind, known);
+        } else if ends.map(Ends::transmitted) == Some(Branch::Grown) {
+            queue(Err(End::Zero), 0.0, Side::Transmitted, from.medium, Known::Dropped);
         }
-        match (reflected, known(ends.map(Ends::reflected), true, reflected.is_ok())) {
-            (Ok(path), known) => {
-                queue(surface.reflect(), (path, mirrored), Side::Reflected, from.medium, known);
-            }
-            (Err(_), Known::Dropped) => {
-                queue(at.point, (from.path, 0.0), Side::Reflected, from.medium, Known::Dropped);
-            }
-            _ => {}
-        }
+        let known = known(ends.map(Ends::reflected), before[0] == gloss, reflected.is_ok());
+        queue(reflected, mirrored, Side::Reflected, from.medium, known);
         Ok(())
     }
 
@@ -469,117 +474,37 @@ impl<'a> Grower<'a> {
         self.values.follow(from.path, Factor::new(kind, material, 0))
     }
 
-    /// What a light that shines onto the surface from behind shows of itself: none without Hall.
-    #[inline(always)]
-    fn behind(&self, material: u16, surface: &Surface, to_light: DVec3) -> Lobe {
-        match (self.models[material as usize], surface.refracted) {
-            (Model::Hall, Some(through)) if surface.geometric.dot(to_light) < 0.0 => {
-                lobe::transmitted(through, to_light, surface.reflectance())
-            }
-            _ => Lobe::NONE,
-        }
-    }
-
     /// Whether a surface bends rays as it did in the kept trees.
     #[inline(always)]
     fn refracts_as_before(&self, crossing: &Crossing, eta: f64) -> bool {
-        crossing.eta(&self.iors_before) == eta
-    }
-
-    /// Sends a shadow ray to a light in front of the geometric surface, and to one that shines
-    /// through it, unless `met` still stands. Where nothing passes, the surface's own solid is what
-    /// stops the latter.
-    #[inline(always)]
-    pub(super) fn light<S: Simd, K: Sink>(
-        &self,
-        simd: S,
-        worker: &mut Worker,
-        (at, surface): (&Interaction, &Surface),
-        (light, place): (u16, &LightPlace),
-        met: Option<Met<'_>>,
-        sink: &mut K,
-    ) -> Result<(), Stop> {
-        let to_light = match place {
-            LightPlace::Point(p) => (*p - at.point).normalize_or_zero(),
-            LightPlace::Direction(d) => -*d,
-        };
-        let front = surface.geometric.dot(to_light) > 0.0;
-        let behind = if front { Lobe::NONE } else { self.behind(at.material, surface, to_light) };
-        if !front && behind == Lobe::NONE {
-            return Ok(());
-        }
-        let stopped = LightHit::stopped(light);
-        if !front && self.opaque[at.solid as usize] {
-            sink.light(stopped, &[at.solid]);
-            return Ok(());
-        }
-        let blocker = match met {
-            Some(Met::Blocker(solid)) if self.opaque[solid as usize] => Some(solid),
-            Some(Met::Crossed(solids)) => {
-                worker.crossed.clear();
-                worker.crossed.extend_from_slice(solids);
-                None
-            }
-            _ => self.cast_shadow(simd, worker, at, to_light, place),
-        };
-        if let Some(solid) = blocker {
-            sink.light(stopped, &[solid]);
-            return Ok(());
-        }
-        let crossed = &mut worker.crossed;
-        if crossed.len() > MOST_CROSSED {
-            return Err(Stop::Surfaces);
-        }
-        crossed.sort_unstable();
-        let (n_dot_l, Lobe { angle, weight }) = if front {
-            let lit = Lit { normal: surface.normal, to_eye: surface.to_eye, to_light };
-            let model = self.models[at.material as usize];
-            let lobe = lobe::highlight(model, &lit, surface.contrast);
-            (surface.normal.dot(to_light) as f32, lobe)
-        } else {
-            (0.0, behind)
-        };
-        let crossings = crossed.len() as u16;
-        sink.light(LightHit { light, crossed: crossings, n_dot_l, angle, weight }, crossed);
-        Ok(())
-    }
-
-    /// The opaque solid between a point and a light, or, if there is none, all solids crossed, in
-    /// `worker.crossed`.
-    #[inline(always)]
-    fn cast_shadow<S: Simd>(
-        &self,
-        simd: S,
-        worker: &mut Worker,
-        at: &Interaction,
-        to_light: DVec3,
-        place: &LightPlace,
-    ) -> Option<u32> {
-        worker.rays.shadow += 1;
-        let (ray, leaving) = self.geometry.spawn(at, to_light);
-        let t_max = match place {
-            LightPlace::Point(p) => (*p - ray.origin).length(),
-            LightPlace::Direction(_) => f64::INFINITY,
-        };
-        let Worker { stack, crossed, .. } = worker;
-        self.geometry.occluded(simd, stack, &ray, t_max, Some(leaving), &self.opaque, crossed)
+        crossing.eta(&self.before.iors) == eta
     }
 }
 
-/// A light's place, its direction of length 1.
-fn with_unit_direction(place: &LightPlace) -> LightPlace {
-    match place {
-        LightPlace::Point(point) => LightPlace::Point(*point),
-        LightPlace::Direction(along) => LightPlace::Direction(along.normalize()),
+/// A branch that is followed and its direction: the sharp one, or, with an exponent above 0, one drawn
+/// from the lobe around it, which must be on the side of `up`.
+#[inline(always)]
+pub(super) fn blurred(
+    path: PathWeight,
+    sharp: DVec3,
+    (exponent, up): (f32, DVec3),
+    sample: Sample,
+    way: u32,
+) -> Result<(PathWeight, DVec3), End> {
+    if exponent == 0.0 {
+        return Ok((path, sharp));
     }
+    let direction = blur::drawn(sharp, exponent, sample.numbers(Effect::Gloss, way));
+    if direction.dot(up) > 0.0 { Ok((path, direction)) } else { Err(End::Astray) }
 }
 
-pub(super) fn branch(followed: Result<PathWeight, End>) -> Branch {
+pub(super) fn branch<T>(followed: &Result<T, End>) -> Branch {
     match followed {
         Ok(_) => Branch::Grown,
         Err(End::Zero) => Branch::Zero,
         Err(End::Weight) => Branch::Weight,
         Err(End::Depth) => Branch::Depth,
         Err(End::Faint) => Branch::Faint,
+        Err(End::Astray) => Branch::Astray,
     }
 }

@@ -1,6 +1,6 @@
 //! Ray trees as they are kept: what rays met, from which everything else is computed again.
 
-use super::tree::{BLOCKED, Branch, Ends, LightHit, Node, TileTrees};
+use super::tree::{BEHIND, BLOCKED, Branch, Ends, LightHit, Node, TileTrees, entries};
 use crate::film::layout::{LANES, TILE_BLOCKS};
 
 /// Where a ray of the seen path met a surface: 16 bytes. The ray itself follows from the pixel, the
@@ -31,7 +31,7 @@ impl KeptNode {
 pub struct KeptLight {
     /// The light's key: a light at another place has another key.
     pub key: u16,
-    /// How many entries of `crossings` belong to it, or [`BLOCKED`]: one, the witness.
+    /// How many entries of `crossings` belong to it; or [`BLOCKED`], or [`BEHIND`].
     pub crossed: u16,
 }
 
@@ -286,7 +286,7 @@ impl KeptLight {
     /// How many entries of `crossings` belong to it.
     #[inline(always)]
     fn entries(self) -> usize {
-        if self.crossed == BLOCKED { 1 } else { self.crossed as usize }
+        entries(self.crossed)
     }
 }
 
@@ -296,6 +296,8 @@ pub enum Met<'a> {
     Blocker(u32),
     /// These solids, each as often as it was crossed.
     Crossed(&'a [u32]),
+    /// It was not cast: it had nothing to show.
+    Uncast,
 }
 
 impl<'a> Recalled<'a> {
@@ -305,13 +307,14 @@ impl<'a> Recalled<'a> {
         (self.lights, &self.crossings[..entries])
     }
 
-    /// What the shadow ray to the light with this key met; `None` if none was cast. Lights are asked
-    /// for in the order in which they are kept, others in between.
+    /// What the next shadow ray to the light with this key met; `None` if there is no record of it.
+    /// Lights are asked for in the order in which they are kept, others in between.
     #[inline(always)]
     pub fn light(&mut self, key: u16) -> Option<Met<'a>> {
         let (light, entries) = self.record(key)?;
         Some(match light.crossed {
             BLOCKED => Met::Blocker(entries[0]),
+            BEHIND => Met::Uncast,
             _ => Met::Crossed(entries),
         })
     }

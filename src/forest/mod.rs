@@ -1,17 +1,21 @@
 //! Ray trees: how they are grown, and how they are kept.
 
 pub mod again;
+mod blur;
 pub mod camera;
 pub mod counts;
 mod eye;
 pub mod filter;
 pub mod grow;
 pub mod kept;
+mod lamp;
 pub mod lobe;
 mod media;
 mod rays;
 pub mod sampling;
 pub mod scope;
+mod sequence;
+mod shadow;
 pub mod signature;
 pub mod sink;
 mod surface;
@@ -21,7 +25,29 @@ pub mod tree;
 use std::sync::Arc;
 
 use crate::film::layout::Layout;
+use crate::geometry::Geometry;
+use crate::scene::Scene;
+use crate::scene::model::Lobes;
 use kept::KeptTrees;
+
+/// What turns rays at every solid's surface: kept trees answer for rays that were turned alike.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Before {
+    /// Per solid the index of refraction.
+    pub iors: Vec<f64>,
+    /// Per solid the lobes that blur mirror and refracted rays.
+    pub lobes: Vec<Lobes>,
+}
+
+impl Before {
+    /// That of a scene.
+    pub fn of(scene: &Scene, geometry: &Geometry) -> Before {
+        let materials = || scene.materials.iter();
+        let iors: Vec<f64> = materials().map(|m| m.ior).collect();
+        let lobes: Vec<Lobes> = materials().map(|m| m.lobes()).collect();
+        Before { iors: geometry.of_solids(&iors), lobes: geometry.of_solids(&lobes) }
+    }
+}
 
 /// The kept trees of a picture, tile by tile. Clones share them.
 #[derive(Clone, Debug, Default, PartialEq)]

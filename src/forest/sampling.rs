@@ -183,7 +183,8 @@ fn sobol_second(mut index: u32) -> u32 {
 }
 
 /// Nested uniform scrambling of a fraction's bits, from the highest down.
-fn scramble(fraction: u32, seed: u32) -> u32 {
+#[inline(always)]
+pub(super) fn scramble(fraction: u32, seed: u32) -> u32 {
     let mut v = fraction.reverse_bits();
     v = v.wrapping_add(seed);
     v ^= v.wrapping_mul(0x6c50_b47c);
@@ -194,7 +195,8 @@ fn scramble(fraction: u32, seed: u32) -> u32 {
 }
 
 /// A 32-bit mix (Wellons' lowbias32).
-fn hash(mut v: u32) -> u32 {
+#[inline(always)]
+pub(super) fn hash(mut v: u32) -> u32 {
     v ^= v >> 16;
     v = v.wrapping_mul(0x7feb_352d);
     v ^= v >> 15;
@@ -202,7 +204,8 @@ fn hash(mut v: u32) -> u32 {
     v ^ v >> 16
 }
 
-fn unit(fraction: u32) -> f64 {
+#[inline(always)]
+pub(super) fn unit(fraction: u32) -> f64 {
     f64::from(fraction) / 4_294_967_296.0
 }
 

@@ -2,7 +2,7 @@
 
 pub use crate::scene::PILOTS;
 
-use super::tree::{BLOCKED, Branch, LightHit, Node, Reader};
+use super::tree::{BEHIND, BLOCKED, Branch, LightHit, Node, Reader};
 
 /// Levels of a tree that count: the surface seen, what it mirrors or shows behind it, and what that
 /// does.
@@ -131,8 +131,8 @@ impl Hash {
 
     /// Gives whether the light arrives.
     fn light(&mut self, hit: &LightHit, crossed: &[u32], solids: &impl Solids) -> bool {
-        let stopped =
-            hit.crossed == BLOCKED || crossed.iter().any(|&solid| solids.is_opaque(solid));
+        let stopped = [BLOCKED, BEHIND].contains(&hit.crossed)
+            || crossed.iter().any(|&solid| solids.is_opaque(solid));
         self.add(u32::from(hit.light) << 1 | u32::from(stopped));
         if !stopped {
             crossed.iter().for_each(|&solid| self.add(solid));

@@ -22,9 +22,12 @@ pub enum Branch {
     /// Frontier: its geometric weight, a product of Fresnel's reflectances, is below the cut-off,
     /// whatever the parameters are.
     Faint,
+    /// There is no such ray: the direction drawn from the lobe of a blurred one lies on the wrong
+    /// side of the surface. It counts as black.
+    Astray,
 }
 
-const BRANCHES: [Branch; 7] = [
+const BRANCHES: [Branch; 8] = [
     Branch::Grown,
     Branch::Missed,
     Branch::Zero,
@@ -32,6 +35,7 @@ const BRANCHES: [Branch; 7] = [
     Branch::Depth,
     Branch::Absent,
     Branch::Faint,
+    Branch::Astray,
 ];
 
 /// Both branches of a node in a byte: the reflected one in bits 0…2, the transmitted one in bits
@@ -47,8 +51,8 @@ impl Ends {
 
     /// The ends with these bits, or `None` if no ends have them.
     pub fn from_bits(bits: u8) -> Option<Ends> {
-        let branches = BRANCHES.len() as u8;
-        (bits & 7 < branches && bits >> 3 & 7 < branches && bits < 128).then_some(Ends(bits))
+        // Three bits name each of the eight branches.
+        (bits < 128).then_some(Ends(bits))
     }
 
     /// The bits, for files.
@@ -128,13 +132,14 @@ pub fn weights(fresnel: f32) -> [f32; 2] {
 pub struct LightHit {
     /// Index of the light.
     pub light: u16,
-    /// How many entries of `crossings` belong to it, or [`BLOCKED`]: one, the witness.
+    /// How many entries of `crossings` belong to it; or [`BLOCKED`], or [`BEHIND`].
     pub crossed: u16,
-    /// N·L with the shading normal: may be ≤ 0 where normals are smoothed; 0 for a light behind.
+    /// N·L with the shading normal, times the ray's share of the light: may be ≤ 0 where normals are
+    /// smoothed; 0 for a light behind.
     pub n_dot_l: f32,
     /// [`Lobe::angle`](super::lobe::Lobe) of the highlight.
     pub angle: f32,
-    /// [`Lobe::weight`](super::lobe::Lobe) of the highlight, 0 if there is none.
+    /// [`Lobe::weight`](super::lobe::Lobe) of the highlight times the same share, 0 if there is none.
     pub weight: f32,
 }
 
@@ -151,8 +156,21 @@ impl LightHit {
     }
 }
 
-/// [`LightHit::crossed`] of a shadow ray that an opaque solid stopped.
+/// [`LightHit::crossed`] of a shadow ray that an opaque solid stopped: one entry, the witness.
 pub const BLOCKED: u16 = u16::MAX;
+/// [`LightHit::crossed`] of a ray that was not cast, because it has nothing to show, beside others to
+/// the same light that were: no entry.
+pub const BEHIND: u16 = u16::MAX - 1;
+
+/// How many entries of `crossings` belong to a record with this [`LightHit::crossed`].
+#[inline(always)]
+pub fn entries(crossed: u16) -> usize {
+    match crossed {
+        BLOCKED => 1,
+        BEHIND => 0,
+        count => count as usize,
+    }
+}
 
 /// The trees of one tile, in the order of its pixels and their samples.
 ///
@@ -257,7 +275,8 @@ impl TileTrees {
                 let mut previous = None;
                 for _ in 0..node.lights {
                     let (hit, crossed) = reader.light();
-                    assert!(previous < Some(hit.light), "lights out of order");
+                    // A light has as many records as rays.
+                    assert!(previous <= Some(hit.light), "lights out of order");
                     assert!((hit.light as usize) < lights, "light {}", hit.light);
                     assert!(crossed.iter().all(|&s| (s as usize) < solids), "crossed solid");
                     let finite = hit.n_dot_l.is_finite() && hit.angle.is_finite();
@@ -312,7 +331,7 @@ impl<'a> Reader<'a> {
     pub fn light(&mut self) -> (&'a LightHit, &'a [u32]) {
         let hit = &self.trees.lights[self.at.light as usize];
         let from = self.at.crossing as usize;
-        let count = if hit.crossed == BLOCKED { 1 } else { hit.crossed as usize };
+        let count = entries(hit.crossed);
         self.at.light += 1;
         self.at.crossing += count as u32;
         (hit, &self.trees.crossings[from..from + count])

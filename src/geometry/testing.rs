@@ -65,6 +65,8 @@ pub(super) fn scene(solids: Vec<Solid>) -> Scene {
         filter: Rgb::WHITE,
         ior: 1.0,
         fresnel: false,
+        gloss: 0.0,
+        translucency: 0.0,
     };
     let checker = Paint::Checker { a: Rgb::WHITE, b: Rgb::BLACK, size: 1.0 };
     Scene {

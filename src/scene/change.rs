@@ -26,16 +26,20 @@ pub struct Change {
     /// Materials of the old scene whose surfaces are to be read again, in the trees that show them
     /// or pass light through them.
     pub nodes: Vec<u16>,
-    /// Whether shadow rays to a light are cast everywhere: it is new, or elsewhere.
+    /// Whether all surfaces are to be read again because of a light: it is new, or elsewhere.
     pub shadows: bool,
     /// Whether reading again may cast rays.
     pub casts: bool,
-    /// Per light of the new scene the light of the old one that stands in the same place.
+    /// Per light of the new scene the light of the old one to which shadow rays are the same.
     pub lights: Vec<Option<u16>>,
+    /// Per light of the new scene whether its coefficients are others.
+    pub relit: Vec<bool>,
     /// Per material of the new scene that of the old one.
     pub materials: Vec<Option<u16>>,
     /// Whether any index of refraction differs.
     iors: bool,
+    /// Whether any lobe that blurs differs.
+    lobes: bool,
     /// Materials of the new scene whose highlight has another peak: their coefficients are folded
     /// again.
     pub refold: Vec<u16>,
@@ -77,6 +81,9 @@ impl Change {
         if change.iors {
             change.refraction(old, new);
         }
+        if change.lobes {
+            change.blur(old, new);
+        }
         change.surfaces |= !change.keeps_materials() || materials.len() != new.materials.len();
         for (a, b) in solids.iter().zip(&new.solids) {
             change.solid(a, b);
@@ -99,6 +106,20 @@ impl Change {
         }
     }
 
+    /// Compares lobes that blur, where they show.
+    fn blur(&mut self, old: &Scene, new: &Scene) {
+        for (i, material) in new.materials.iter().enumerate() {
+            let Some(before) = self.materials[i] else { continue };
+            let was = old.materials[usize::from(before)].lobes();
+            let shown = material.lobes_matter();
+            for (k, what) in ["gloss", "translucency"].into_iter().enumerate() {
+                let shows = shown[k] && was[k] != material.lobes()[k];
+                self.node(shows, before, what);
+                self.casts |= shows;
+            }
+        }
+    }
+
     /// Whether every material of the new scene has its index of the old one.
     pub fn keeps_materials(&self) -> bool {
         self.materials.iter().zip(0..).all(|(&before, new)| before == Some(new))
@@ -107,14 +128,17 @@ impl Change {
     fn lights(&mut self, old: &[Light], new: &[Light]) {
         self.lights = matched(old, new, |light| &light.name);
         for (i, light) in new.iter().enumerate() {
-            match self.lights[i] {
-                Some(before) => {
-                    if !self.light(&old[before as usize], light) {
-                        self.lights[i] = None;
-                    }
+            let same = match self.lights[i] {
+                Some(before) => self.light(&old[before as usize], light),
+                None => {
+                    self.shadow(true, "a light");
+                    Rays::Other
                 }
-                None => self.shadow(true, "a light"),
+            };
+            if same == Rays::Other {
+                self.lights[i] = None;
             }
+            self.relit.push(same != Rays::Same);
         }
         // What a light that is gone lit is as black as if it were off.
         self.term(old.len() != new.len());
@@ -184,18 +208,34 @@ impl Change {
         self.term(*depth != new.depth || *cutoff != new.cutoff);
     }
 
-    /// Gives whether it is in the same place.
-    fn light(&mut self, old: &Light, new: &Light) -> bool {
-        let Light { name: _, color, intensity, on, place } = old;
+    /// Gives what becomes of its shadow rays.
+    fn light(&mut self, old: &Light, new: &Light) -> Rays {
+        let Light { name: _, color, intensity, on, falloff, samples: _, place } = old;
         self.term(*color != new.color || *intensity != new.intensity || *on != new.on);
-        match (place, &new.place) {
-            (LightPlace::Point(a), LightPlace::Point(b)) => self.shadow(a != b, "a light's point"),
+        self.term(*falloff != new.falloff && old.falls_off());
+        let moved = match (place, &new.place) {
+            (LightPlace::Point(a), LightPlace::Point(b)) => (a != b).then_some("a light's point"),
             (LightPlace::Direction(a), LightPlace::Direction(b)) => {
-                self.shadow(a != b, "a light's direction");
+                (a != b).then_some("a light's direction")
             }
-            _ => self.shadow(true, "a light's place"),
+            (LightPlace::Spot { at: a, .. }, LightPlace::Spot { at: b, .. }) => {
+                (a != b).then_some("a light's spot")
+            }
+            (LightPlace::Area(a), LightPlace::Area(b)) => (a != b).then_some("a light's area"),
+            _ => Some("a light's place"),
+        };
+        let resampled = (old.rays() != new.rays()).then_some("a light's samples");
+        if let Some(what) = moved.or(resampled) {
+            self.shadow(true, what);
+            return Rays::Other;
         }
-        *place == new.place
+        // A cone weighs the rays within it, and lets some be cast that were outside.
+        let other_cone = *place != new.place;
+        self.shadow(other_cone, "a light's cone");
+        let other_law = old.falls_off() != new.falls_off();
+        self.part(other_law, "a light's falloff");
+        self.shadows |= other_law;
+        if other_cone || other_law { Rays::Weighed } else { Rays::Same }
     }
 
     fn material(&mut self, index: usize, before: u16, old: &Material, new: &Material) {
@@ -216,6 +256,8 @@ impl Change {
             filter,
             ior,
             fresnel: _,
+            gloss: _,
+            translucency: _,
         } = old;
         self.paint(before, paint, &new.paint);
         let local = *kloc != new.kloc || *ambient != new.ambient || *diffuse != new.diffuse;
@@ -237,6 +279,7 @@ impl Change {
         let hall = *model != Model::Hall && new.model == Model::Hall;
         self.casts |= hall && !new.transmit.is_black();
         self.iors |= *ior != new.ior;
+        self.lobes |= old.lobes() != new.lobes();
     }
 
     fn paint(&mut self, before: u16, old: &Paint, new: &Paint) {
@@ -286,6 +329,17 @@ impl Change {
     }
 }
 
+/// What becomes of the shadow rays to a light.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Rays {
+    /// They are cast anew.
+    Other,
+    /// What is known of them stands, but they weigh otherwise, or more of them are cast.
+    Weighed,
+    /// They stay as they are.
+    Same,
+}
+
 /// Per new thing the old one that it is: the one at the same place in a list as long as the old one,
 /// the next one of the same name in another.
 fn matched<T>(old: &[T], new: &[T], name: impl Fn(&T) -> &str) -> Vec<Option<u16>> {
@@ -321,10 +375,14 @@ impl Material {
             filter,
             ior,
             fresnel: _,
+            gloss,
+            translucency,
         } = self;
         let path = (reflect, transmit, filter, ior);
+        let lobes = [*gloss, *translucency];
         let hall = |model| model == Model::Hall;
         path == (&other.reflect, &other.transmit, &other.filter, &other.ior)
+            && lobes == other.lobes()
             && self.weighs_branches() == other.weighs_branches()
             && hall(*model) == hall(other.model)
     }

@@ -6,12 +6,13 @@ use glam::DVec3;
 
 use super::direction::{TINY, unit};
 use super::fields::{self, Need, Visit};
+use super::light::MOST_LIGHT_RAYS;
 use super::slot::Slot;
 use super::toml_text::number;
 use super::value::Names;
 use super::{
-    Camera, Lens, Light, LightPlace, MAX_KNOT_FACES, MAX_NAMED, MAX_PIXELS, Picture, Scene, Shape,
-    Solid,
+    Area, Camera, Lens, Light, LightPlace, MAX_KNOT_FACES, MAX_NAMED, MAX_PIXELS, Picture, Scene,
+    Shape, Solid,
 };
 
 /// Sine of the smallest angle between the view and `up`.
@@ -60,6 +61,7 @@ pub fn relations(scene: &Scene) -> Vec<Flaw> {
     flaws.extend(camera(&scene.camera));
     flaws.extend(picture(&scene.picture));
     flaws.extend(scene.lights.iter().filter_map(light));
+    flaws.extend(too_many_rays(scene));
     flaws.extend(scene.solids.iter().filter_map(solid));
     flaws
 }
@@ -107,10 +109,47 @@ fn picture(picture: &Picture) -> Option<Flaw> {
 }
 
 fn light(light: &Light) -> Option<Flaw> {
-    let LightPlace::Direction(along) = light.place else { return None };
-    let help = "give the direction in which the light shines, for example `direction = [0, 0, -1]`";
-    let message = "`direction` is zero, which is no direction";
-    unit(along).is_none().then(|| Flaw::new(&["lights", &light.name, "direction"], message, help))
+    let name = light.name.as_str();
+    match light.place {
+        LightPlace::Direction(along) if unit(along).is_none() => {
+            let help = "give the direction in which the light shines, for example \
+                        `direction = [0, 0, -1]`";
+            let message = "`direction` is zero, which is no direction";
+            Some(Flaw::new(&["lights", name, "direction"], message, help))
+        }
+        LightPlace::Spot { at, towards, .. } if unit(towards - at).is_none() => {
+            let message = "`towards` is where `at` is: the light shines nowhere";
+            Some(Flaw::new(&["lights", name, "spot", "towards"], message, "move one of the two"))
+        }
+        LightPlace::Area(Area::Disc { normal, .. }) if unit(normal).is_none() => {
+            let help = "give a direction that stands on the disc, for example `normal = [0, 0, 1]`";
+            let path = ["lights", name, "area", "disc", "normal"];
+            Some(Flaw::new(&path, "`normal` is zero, which is no direction", help))
+        }
+        _ => None,
+    }
+}
+
+/// Lights that take more rays than a point or a pixel can count.
+fn too_many_rays(scene: &Scene) -> Option<Flaw> {
+    let camera = u64::from(scene.trace.samples);
+    let mut sum = 0;
+    scene.lights.iter().find_map(|light| {
+        let rays = u64::from(light.rays());
+        sum += rays;
+        let path = ["lights", &light.name, "samples"];
+        let message = if rays > 1 && rays * camera > MOST_LIGHT_RAYS {
+            format!(
+                "{camera} camera rays with {rays} rays to this light each are too many: at most \
+                 {MOST_LIGHT_RAYS} together"
+            )
+        } else if rays > 1 && sum > MOST_LIGHT_RAYS {
+            format!("all lights take {sum} rays together: at most {MOST_LIGHT_RAYS}")
+        } else {
+            return None;
+        };
+        Some(Flaw::new(&path, message, "take fewer `samples`"))
+    })
 }
 
 fn solid(solid: &Solid) -> Option<Flaw> {

@@ -9,10 +9,7 @@ use super::filter::Filter;
 use super::mesh::Mesh;
 use super::model::Model;
 use super::motion::Motion;
-use super::{
-    Background, Camera, Lens, Light, LightPlace, Material, Paint, Picture, Scene, Shape, Solid,
-    Trace,
-};
+use super::{Background, Camera, Lens, Material, Paint, Picture, Scene, Shape, Solid, Trace};
 use crate::color::Rgb;
 
 impl Default for Scene {
@@ -62,19 +59,6 @@ impl Default for Trace {
     }
 }
 
-impl Light {
-    /// A white point light at the origin.
-    pub fn new(name: impl Into<String>) -> Light {
-        Light {
-            name: name.into(),
-            color: Rgb::WHITE,
-            intensity: Rgb::WHITE,
-            on: true,
-            place: LightPlace::Point(DVec3::ZERO),
-        }
-    }
-}
-
 impl Material {
     /// White, matt, opaque.
     pub fn new(name: impl Into<String>) -> Material {
@@ -95,6 +79,8 @@ impl Material {
             filter: Rgb::WHITE,
             ior: 1.5,
             fresnel: false,
+            gloss: 0.0,
+            translucency: 0.0,
         }
     }
 }
@@ -113,16 +99,6 @@ impl Lens {
         match key {
             "height" => Lens::Parallel { height: 4.0 },
             _ => Lens::Perspective { fov_degrees: 45.0 },
-        }
-    }
-}
-
-impl LightPlace {
-    /// The place whose key in the scene file is `key`; a point for any other word.
-    pub fn named(key: &str) -> LightPlace {
-        match key {
-            "direction" => LightPlace::Direction(DVec3::NEG_Z),
-            _ => LightPlace::Point(DVec3::ZERO),
         }
     }
 }

@@ -26,7 +26,7 @@ pub enum Kind {
     Specular,
     /// `kloc · specular · transmit · filter`, for the highlight of a light behind the surface.
     Through,
-    /// `color · intensity` of a light, 0 if it is off.
+    /// `color · intensity · falloff²` of a light (the last only where it falls off), 0 if it is off.
     Light,
     /// `transmit · filter` of a material that a shadow ray crosses, once per surface.
     Shadow,
@@ -279,6 +279,8 @@ pub enum End {
     Depth,
     /// Its geometric weight is below the cut-off.
     Faint,
+    /// Its direction, drawn from a lobe, lies on the wrong side of the surface.
+    Astray,
 }
 
 fn slot_colors(material: &Material) -> [Rgb; SLOTS] {
@@ -292,6 +294,12 @@ fn tint(color: Rgb, metallic: f32) -> Rgb {
     color.map(|c| (1.0 - metallic) + metallic * c)
 }
 
+/// What a light gives of itself; where it falls off, at distance 1: its coefficients hold 1/d².
 fn light_value(light: &Light) -> Rgb {
-    if light.on { light.color * light.intensity } else { Rgb::BLACK }
+    let strength = light.color * light.intensity;
+    match (light.on, light.falls_off()) {
+        (false, _) => Rgb::BLACK,
+        (true, false) => strength,
+        (true, true) => strength * (light.falloff * light.falloff) as f32,
+    }
 }

@@ -1,11 +1,12 @@
 //! The fields of every part of a scene, listed once: names, ranges, and who may visit them.
 
+use super::light::MOST_LIGHT_SAMPLES;
 use super::motion::Motion;
 use super::range::Range;
 use super::slot::Slot;
 use super::{
-    Background, Camera, Lens, Light, LightPlace, Material, Paint, Picture, Placement, Scene, Shape,
-    Solid, Trace,
+    Area, Background, Camera, Lens, Light, LightPlace, Material, Paint, Picture, Placement, Scene,
+    Shape, Solid, Trace,
 };
 
 /// Light, colours, and the coefficients of the local shading.
@@ -22,6 +23,8 @@ pub const ROUGHNESS: Range = Range::closed(0.02, 1.0);
 pub const COORDINATE: Range = Range::closed(-1e12, 1e12);
 /// Radii, sides and scales.
 pub const LENGTH: Range = Range::above(0.0, 1e12);
+/// Exponents of highlights and of the lobes that blur.
+pub const EXPONENT: Range = Range::closed(0.0, 1e6);
 
 /// Lengths that may be nothing.
 pub const DISTANCE: Range = Range::closed(0.0, 1e12);
@@ -31,7 +34,9 @@ pub const LISTS: [&str; 3] = ["lights", "materials", "solids"];
 /// Keys of [`Lens`].
 pub const LENSES: &[&str] = &["fov_degrees", "height"];
 /// Keys of [`LightPlace`].
-pub const PLACES: &[&str] = &["point", "direction"];
+pub const PLACES: &[&str] = &["point", "direction", "spot", "area"];
+/// Keys of [`Area`].
+pub const AREAS: &[&str] = &["rectangle", "disc", "sphere"];
 /// Keys of [`Paint`].
 pub const PAINTS: &[&str] = &["color", "texture"];
 /// Keys of the patterns in a `texture`.
@@ -140,15 +145,61 @@ pub fn background(background: &mut Background, v: &mut dyn Visit) {
 
 /// Visits `[lights.NAME]`.
 pub fn light(light: &mut Light, v: &mut dyn Visit) {
-    let Light { name: _, color, intensity, on, place } = light;
+    let Light { name: _, color, intensity, on, falloff, samples, place } = light;
+    light_place(place, v);
+    v.leaf("color", Need::Optional, Slot::Coefficient(color, COEFFICIENT));
+    v.leaf("intensity", Need::Optional, Slot::Coefficient(intensity, COEFFICIENT));
+    v.leaf("on", Need::Optional, Slot::Flag(on));
+    v.leaf("falloff", Need::Optional, Slot::Number(falloff, DISTANCE));
+    let most = Range::closed(1.0, MOST_LIGHT_SAMPLES as f64);
+    v.leaf("samples", Need::Optional, Slot::Whole(samples, most));
+}
+
+/// Visits the key of a light that places it.
+pub fn light_place(place: &mut LightPlace, v: &mut dyn Visit) {
     let need = Need::OneOf(PLACES);
     match place {
         LightPlace::Point(point) => v.leaf("point", need, Slot::Vector(point, COORDINATE)),
         LightPlace::Direction(along) => v.leaf("direction", need, Slot::Vector(along, COORDINATE)),
+        LightPlace::Spot { at, towards, angle_degrees, edge } => {
+            v.group("spot", need, &mut |v| {
+                v.leaf("at", Need::Required, Slot::Vector(at, COORDINATE));
+                v.leaf("towards", Need::Required, Slot::Vector(towards, COORDINATE));
+                let angle = Range::above(0.0, 180.0);
+                v.leaf("angle_degrees", Need::Required, Slot::Number(angle_degrees, angle));
+                v.leaf("edge", Need::Required, Slot::Number(edge, SHARE));
+            });
+        }
+        LightPlace::Area(area) => v.group("area", need, &mut |v| {
+            let key = match area {
+                Area::Rectangle { .. } => "rectangle",
+                Area::Disc { .. } => "disc",
+                Area::Sphere { .. } => "sphere",
+            };
+            v.group(key, Need::OneOf(AREAS), &mut |v| self::area(area, v));
+        }),
     }
-    v.leaf("color", Need::Optional, Slot::Coefficient(color, COEFFICIENT));
-    v.leaf("intensity", Need::Optional, Slot::Coefficient(intensity, COEFFICIENT));
-    v.leaf("on", Need::Optional, Slot::Flag(on));
+}
+
+/// Visits what stands in the table of a light's surface.
+fn area(area: &mut Area, v: &mut dyn Visit) {
+    let need = Need::Required;
+    match area {
+        Area::Rectangle { center, along, across } => {
+            v.leaf("center", need, Slot::Vector(center, COORDINATE));
+            v.leaf("along", need, Slot::Vector(along, COORDINATE));
+            v.leaf("across", need, Slot::Vector(across, COORDINATE));
+        }
+        Area::Disc { center, normal, radius } => {
+            v.leaf("center", need, Slot::Vector(center, COORDINATE));
+            v.leaf("normal", need, Slot::Vector(normal, COORDINATE));
+            v.leaf("radius", need, Slot::Number(radius, LENGTH));
+        }
+        Area::Sphere { center, radius } => {
+            v.leaf("center", need, Slot::Vector(center, COORDINATE));
+            v.leaf("radius", need, Slot::Number(radius, LENGTH));
+        }
+    }
 }
 
 /// Visits `[materials.NAME]`.
@@ -170,6 +221,8 @@ pub fn material(material: &mut Material, v: &mut dyn Visit) {
         filter,
         ior,
         fresnel,
+        gloss,
+        translucency,
     } = material;
     self::paint(paint, v);
     v.leaf("kloc", Need::Optional, Slot::Coefficient(kloc, COEFFICIENT));
@@ -177,7 +230,7 @@ pub fn material(material: &mut Material, v: &mut dyn Visit) {
     v.leaf("diffuse", Need::Optional, Slot::Coefficient(diffuse, COEFFICIENT));
     v.leaf("model", Need::Optional, Slot::Choice(model));
     v.leaf("specular", Need::Optional, Slot::Coefficient(specular, COEFFICIENT));
-    v.leaf("shininess", Need::Optional, Slot::Single(shininess, Range::closed(0.0, 1e6)));
+    v.leaf("shininess", Need::Optional, Slot::Single(shininess, EXPONENT));
     v.leaf("roughness", Need::Optional, Slot::Single(roughness, ROUGHNESS));
     v.leaf("metallic", Need::Optional, Slot::Single(metallic, SHARE));
     v.leaf("emission", Need::Optional, Slot::Coefficient(emission, COEFFICIENT));
@@ -186,6 +239,8 @@ pub fn material(material: &mut Material, v: &mut dyn Visit) {
     v.leaf("filter", Need::Optional, Slot::Coefficient(filter, COEFFICIENT));
     v.leaf("ior", Need::Optional, Slot::Number(ior, Range::closed(0.1, 10.0)));
     v.leaf("fresnel", Need::Optional, Slot::Flag(fresnel));
+    v.leaf("gloss", Need::Optional, Slot::Single(gloss, EXPONENT));
+    v.leaf("translucency", Need::Optional, Slot::Single(translucency, EXPONENT));
 }
 
 /// Visits `color` or `texture`.
@@ -297,6 +352,10 @@ mod tests {
         for key in PLACES {
             let mut value = Light { place: LightPlace::named(key), ..Light::new("a") };
             assert!(first_key(&mut |v| light(&mut value, v)).contains(&key.to_string()));
+        }
+        for key in AREAS {
+            assert_eq!(LightPlace::of_kind(key), LightPlace::Area(Area::named(key)));
+            assert_eq!(LightPlace::of_kind(key).kind(), *key);
         }
     }
 

@@ -13,6 +13,7 @@ pub mod factor;
 pub mod fields;
 pub mod filter;
 mod inside;
+pub mod light;
 pub mod mesh;
 pub mod model;
 pub mod motion;
@@ -33,6 +34,7 @@ use glam::DVec3;
 
 use crate::color::Rgb;
 use filter::Filter;
+pub use light::{Area, Light, LightPlace};
 use mesh::Mesh;
 use model::Model;
 use motion::Motion;
@@ -53,7 +55,7 @@ pub struct Scene {
     pub background: Background,
     /// How far and how finely rays are traced.
     pub trace: Trace,
-    /// Point and directional lights, in file order.
+    /// Lights, in file order.
     pub lights: Vec<Light>,
     /// Materials, in file order.
     pub materials: Vec<Material>,
@@ -148,30 +150,6 @@ impl Trace {
 /// Samples that every pixel gets where sampling is adaptive.
 pub const PILOTS: u32 = 4;
 
-/// `[lights.NAME]`. A light that is off is traced all the same.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Light {
-    /// Unique among the lights.
-    pub name: String,
-    /// Tint of the light.
-    pub color: Rgb,
-    /// Strength: a surface facing the light shows `diffuse · color · intensity`. No falloff.
-    pub intensity: Rgb,
-    /// Whether it shines.
-    pub on: bool,
-    /// Where it is.
-    pub place: LightPlace,
-}
-
-/// Where a light is.
-#[derive(Clone, Debug, PartialEq)]
-pub enum LightPlace {
-    /// At a point of the world (`point`).
-    Point(DVec3),
-    /// Infinitely far away, *shining along* this direction (`direction`); not zero.
-    Direction(DVec3),
-}
-
 /// `[materials.NAME]`: `kloc·I_local + reflect·I_reflected + transmit·filter·I_refracted`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
@@ -208,6 +186,11 @@ pub struct Material {
     /// Whether `reflect` and `transmit` are weighted by Fresnel's reflectance F and 1 − F, as in
     /// Hall's model they always are.
     pub fresnel: bool,
+    /// Exponent n of the lobe cosⁿ around the mirror direction in which the mirror ray goes: lower
+    /// is blurrier, 0 is sharp.
+    pub gloss: f32,
+    /// The same of the refracted ray.
+    pub translucency: f32,
 }
 
 /// Colour of a surface: one colour per *slot*; geometry decides which slot a point falls into.

@@ -77,10 +77,25 @@ impl Peak {
     }
 }
 
+/// Exponents of the lobes of mirror and refracted rays, 0 for a sharp one.
+pub type Lobes = [f32; 2];
+
 impl Material {
     /// Whether mirror and refracted ray are weighted by Fresnel's reflectance.
     pub fn weighs_branches(&self) -> bool {
         self.fresnel || self.model == Model::Hall
+    }
+
+    /// Exponents of the lobes of its mirror and its refracted ray, 0 where it is sharp.
+    pub fn lobes(&self) -> Lobes {
+        [self.gloss, self.translucency]
+    }
+
+    /// Which of its [`Material::lobes`] show: a black material sends no ray that they could blur.
+    pub fn lobes_matter(&self) -> [bool; 2] {
+        let [reflects, transmits] = [self.reflect, self.transmit].map(|share| !share.is_black());
+        // Total reflection shows what is neither mirrored nor transmitted otherwise.
+        [reflects || transmits, transmits]
     }
 }
 

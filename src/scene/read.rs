@@ -7,11 +7,11 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::fields::{LENSES, PAINTS, PLACES, SHAPES};
+use super::fields::{AREAS, LENSES, PAINTS, PLACES, SHAPES};
 use super::mesh::Mesh;
 use super::problem::{Mistake, Problem, SceneError};
 use super::reader;
-use super::{Lens, Light, LightPlace, Material, Paint, Scene, Shape, Solid};
+use super::{Area, Lens, Light, LightPlace, Material, Paint, Scene, Shape, Solid};
 
 /// Reads the scene file at `path`; mesh files are sought beside it.
 pub fn file(path: &Path) -> Result<Scene, SceneError> {
@@ -105,7 +105,11 @@ fn skeleton(root: &DeTable<'_>) -> Scene {
         scene.camera.lens = Lens::named(key);
     }
     for (name, table) in items(root, "lights") {
-        let place = LightPlace::named(chosen(Some(table), PLACES).unwrap_or_default());
+        let mut place = LightPlace::named(chosen(Some(table), PLACES).unwrap_or_default());
+        if let LightPlace::Area(area) = &mut place {
+            let within = table.get_ref().as_table().and_then(|table| table.get("area"));
+            *area = Area::named(chosen(within, AREAS).unwrap_or_default());
+        }
         scene.lights.push(Light { place, ..Light::new(name) });
     }
     for (name, table) in items(root, "materials") {
@@ -296,12 +300,39 @@ mod tests {
                 "a picture of 65536 × 65536 pixels is too large: at most 268435456 pixels",
             ),
             ("picture.size = [0, 5]", "`size` is 0, out of its range: 1 to 65536"),
-            ("[lights.a]", "`lights.a` needs one of `point`, `direction`"),
+            ("[lights.a]", "`lights.a` needs one of `point`, `direction`, `spot`, `area`"),
             (
                 "[lights.a]\npoint = [0, 0, 0]\ndirection = [1, 0, 0]",
                 "`point` and `direction` exclude each other",
             ),
             ("[lights.a]\ndirection = [0, 0, 0]", "`direction` is zero, which is no direction"),
+            (
+                "[lights.a]\nspot = {at=[1,2,3],towards=[1,2,3],angle_degrees=9,edge=0}",
+                "`towards` is where `at` is: the light shines nowhere",
+            ),
+            (
+                "[lights.a]\nspot = {at=[1,2,3],towards=[1,2,4],angle_degrees=0,edge=0}",
+                "`angle_degrees` is 0, out of its range: above 0 and at most 180",
+            ),
+            (
+                "[lights.a]\narea = {disc={center=[0,0,0],normal=[0,0,0],radius=1}}",
+                "`normal` is zero, which is no direction",
+            ),
+            ("[lights.a]\narea = {}", "`lights.a.area` needs one of `rectangle`, `disc`, `sphere`"),
+            (
+                "[lights.a]\narea = {sphere={center=[0,0,0]}}",
+                "`lights.a.area.sphere` needs the key `radius`",
+            ),
+            (
+                "[lights.a]\npoint = [0, 0, 0]\nsamples = 1025",
+                "`samples` is 1025, out of its range: 1 to 1024",
+            ),
+            (
+                "trace.samples = 4096\n[lights.a]\nsamples = 16\n\
+                 area = {sphere={center=[0,0,0],radius=1}}",
+                "4096 camera rays with 16 rays to this light each are too many: at most 65535 \
+                 together",
+            ),
             (
                 "[lights.a]\npoint = [0, 0, 0]\non = 1",
                 "`on` must be true or false, found the whole number 1",

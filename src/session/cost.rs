@@ -26,6 +26,8 @@ pub enum Cost {
     /// A re-shade for values ≥ this; for values below it the kept trees of these pixels are read
     /// again.
     RereadBelow(f64, Pixels),
+    /// A re-shade for values above 0; for 0 the kept trees of these pixels are read again.
+    InstantAboveZero(Pixels),
     /// Highlights are folded again, no ray is cast.
     Refold,
     /// The kept trees of these pixels are read and folded again, no ray is cast.
@@ -43,7 +45,8 @@ pub struct Pixels {
     pub count: u64,
     /// Of how many.
     pub of: u64,
-    /// Branches and shadow rays that come alive in them: at least so many rays are cast.
+    /// Branches and shadow rays that come alive in them: at least so many rays are cast, but for blurred
+    /// ones that go to the wrong side of their surface.
     pub rays: u64,
     /// Whether the kept trees of some of them were released for memory: there every ray is cast.
     pub released: bool,
@@ -71,8 +74,10 @@ impl Pixels {
 /// frontier lives. So are the pixels.
 pub fn cost(session: &mut Session, path: &str) -> Option<Cost> {
     let altered = path::altered(session.scene(), path)?;
-    if let Some(cost) = cost_of_refraction(session, &altered) {
-        return Some(cost);
+    let special =
+        cost_of_refraction(session, &altered).or_else(|| cost_of_falloff(session, &altered));
+    if special.is_some() {
+        return special;
     }
     Some(match knob(session.scene(), &altered) {
         // Which pixels get all samples may change with any branch that begins or ceases to live.
@@ -102,11 +107,30 @@ fn cost_of_refraction(session: &mut Session, altered: &Scene) -> Option<Cost> {
     })
 }
 
+/// The cost of a distance at which a light falls off, if it does; `None` for other parameters.
+fn cost_of_falloff(session: &mut Session, altered: &Scene) -> Option<Cost> {
+    let scene = session.shared_scene();
+    let mut pairs = scene.lights.iter().zip(&altered.lights);
+    let light = pairs.position(|(a, b)| a.falloff != b.falloff)?;
+    if !scene.lights[light].falls_off() {
+        return None;
+    }
+    let mut without = (*scene).clone();
+    without.lights[light].falloff = 0.0;
+    let layout = session.transport.layout;
+    let change = Change::between(&scene, &without);
+    Some(Cost::InstantAboveZero(match session.work(&without, &change) {
+        Work::Regrow(plan) => Pixels::of(&plan, layout),
+        Work::Shade | Work::Trace(_) => Pixels::all(layout),
+    }))
+}
+
 /// The same while the scene is still traced or grown and `session` holds a preview of it: `None` also
 /// where only the whole picture's trees can tell.
 pub fn cost_of_preview(session: &mut Session, path: &str) -> Option<Cost> {
     let altered = path::altered(session.scene(), path)?;
-    if knob(session.scene(), &altered).is_some() {
+    let falls_off = cost_of_falloff(session, &altered).is_some();
+    if falls_off || knob(session.scene(), &altered).is_some() {
         return None;
     }
     let cost = cost_of(session, &altered);
@@ -253,11 +277,11 @@ impl Knob {
         }
     }
 
-    /// The last step at which an index of refraction that the trees were not grown with does not
-    /// matter, if it matters beyond: of this material or of another, which has a denser one before it
-    /// as soon as light passes through this one.
+    /// The last step at which an index of refraction or a lobe that the trees were not grown with does
+    /// not matter, if it matters beyond: of this material, or an index of another, which has a denser one
+    /// before it as soon as light passes through this one.
     fn stale_from(self, session: &Session, first: u32) -> Option<u32> {
-        let Knob::Transmit(_) = self else { return None };
+        let (Knob::Reflect(_) | Knob::Transmit(_)) = self else { return None };
         let present = session.scene();
         let mut beyond = present.clone();
         self.factors(&mut beyond, present, first + 1);

@@ -6,7 +6,7 @@ use crate::color::Rgb;
 use crate::film::layout::{LANES, Layout};
 use crate::fold::{Folder, Names};
 use crate::forest::grow::Grower;
-use crate::forest::tree::{BLOCKED, Branch, Reader, TileTrees};
+use crate::forest::tree::{BEHIND, BLOCKED, Branch, Reader, TileTrees};
 use crate::geometry::Geometry;
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -60,7 +60,7 @@ pub struct InspectedLight {
     pub light: u16,
     /// Whether an opaque solid, of the one material in `crossed`, stopped it.
     pub blocked: bool,
-    /// N·L.
+    /// N·L times the ray's share of the light.
     pub n_dot_l: f32,
     /// Which cosine the highlight depends on.
     pub base: Base,
@@ -165,7 +165,7 @@ impl Walk<'_> {
     /// The next tree. A tree is at most 64 deep, and so is the recursion.
     fn node(&mut self) -> InspectedNode {
         let node = self.reader.node();
-        let lights = (0..node.lights).map(|_| self.light(node.material)).collect();
+        let lights = (0..node.lights).filter_map(|_| self.light(node.material)).collect();
         let reflected = self.branch(node.ends.reflected());
         let transmitted = self.branch(node.ends.transmitted());
         InspectedNode {
@@ -192,8 +192,12 @@ impl Walk<'_> {
         materials
     }
 
-    fn light(&mut self, material: u16) -> InspectedLight {
+    /// The next light; none where a ray had nothing to show.
+    fn light(&mut self, material: u16) -> Option<InspectedLight> {
         let (hit, crossed) = self.reader.light();
+        if hit.crossed == BEHIND {
+            return None;
+        }
         let material = &self.scene.materials[material as usize];
         let base = match material.model {
             _ if hit.is_behind() => Base::Through,
@@ -205,13 +209,13 @@ impl Walk<'_> {
             Measure::Cosine => 1.0 - hit.angle,
             Measure::Tangent => 1.0 / (1.0 + hit.angle).sqrt(),
         };
-        InspectedLight {
+        Some(InspectedLight {
             light: hit.light,
             blocked: hit.crossed == BLOCKED,
             n_dot_l: hit.n_dot_l,
             base,
             cosine,
             crossed: self.materials(crossed),
-        }
+        })
     }
 }

@@ -24,16 +24,16 @@ use crate::film::{Film, Frame};
 use crate::fold::Names;
 use crate::fold::highlight::HighlightPower;
 use crate::fold::transport::Transport;
-use crate::forest::Forest;
 use crate::forest::counts::SampleMap;
 use crate::forest::grow::{Grower, RayCounts};
 use crate::forest::tree::TileTrees;
+use crate::forest::{Before, Forest};
 use crate::geometry::Geometry;
 use crate::math::exposure_factor;
 use crate::progress::Progress;
 use crate::scene::change::Change;
 use crate::scene::factor::FactorValues;
-use crate::scene::model::Peak;
+use crate::scene::model::{Lobes, Peak};
 use crate::scene::{Material, Scene};
 use crate::shade::cpu::{self, Tiles};
 use crate::shade::terms::{TermProgram, TermValues};
@@ -93,6 +93,9 @@ pub struct Session {
     /// Per material the index of refraction with which its nodes stand in the trees: another one than
     /// the scene's only where it does not matter.
     iors: Vec<f64>,
+    /// Per material the lobes with which its nodes stand in the trees: other ones than the scene's only
+    /// where they do not matter.
+    lobes: Vec<Lobes>,
     trace: TraceReport,
     geometry_seconds: f64,
 }
@@ -143,6 +146,7 @@ impl Session {
             keys_in_trees: (0..).take(scene.lights.len()).collect(),
             names: Names::new(geometry.materials(), scene.lights.len()),
             iors: scene.materials.iter().map(|m| m.ior).collect(),
+            lobes: scene.materials.iter().map(Material::lobes).collect(),
             scene,
             options,
             pool,
@@ -279,7 +283,11 @@ impl Session {
         let ior = |(new, before): (&Material, &Option<u16>)| {
             before.map_or(new.ior, |before| self.iors[before as usize])
         };
-        self.iors = pairs.map(ior).collect();
+        self.iors = pairs.clone().map(ior).collect();
+        let lobes = |(new, before): (&Material, &Option<u16>)| {
+            before.map_or(new.lobes(), |before| self.lobes[before as usize])
+        };
+        self.lobes = pairs.map(lobes).collect();
         let kept = change.lights.iter().flatten();
         self.keys = kept.map(|&before| self.keys[before as usize]).collect();
         self.names.lights = self.light_places_after(change);
@@ -458,9 +466,15 @@ impl Session {
 
     /// What grows the trees of the present scene, with what is kept of them.
     fn grower(&self) -> Grower<'_> {
-        let iors = self.geometry.of_solids(&self.iors);
-        let grower = Grower::recalling(&self.scene, &self.geometry, self.keys.clone(), &iors);
+        let before = self.turns();
+        let grower = Grower::recalling(&self.scene, &self.geometry, self.keys.clone(), &before);
         grower.with_map(self.map.as_deref())
+    }
+
+    /// With what the kept trees were grown.
+    fn turns(&self) -> Before {
+        let iors = self.geometry.of_solids(&self.iors);
+        Before { iors, lobes: self.geometry.of_solids(&self.lobes) }
     }
 
     /// The trees of one tile, read from what is kept of them, or grown again.

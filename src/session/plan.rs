@@ -109,7 +109,7 @@ impl Session {
             nodes.extend(gone);
         }
         if !stale.is_empty() {
-            reason.get_or_insert_with(|| "ior moves rays".into());
+            reason.get_or_insert_with(|| "ior or a lobe moves rays".into());
             casts |= stale.iter().any(|(_, leads)| *leads);
             nodes.extend(stale.into_iter().map(|(before, _)| before));
         }
@@ -156,9 +156,7 @@ impl Session {
             return None;
         }
         match (change.shadows, change.moves_rays, alive) {
-            (true, _, []) => {
-                Some(Scope::of_lights(change.lights.iter().map(Option::is_none).collect()))
-            }
+            (true, _, []) => Some(Scope::of_lights(change.relit.clone())),
             (false, None, _) => {
                 let factors = |&id: &u32| self.transport.trie.factors(id);
                 Some(Scope::below(alive.iter().map(factors)))
@@ -167,15 +165,17 @@ impl Session {
         }
     }
 
-    /// Old materials whose index of refraction shows in the new scene, and with which the trees were
-    /// not grown, because it did not matter; and whether rays go on through them.
+    /// Old materials whose index of refraction or lobes show in the new scene, and with which the trees
+    /// were not grown, because they did not matter; and whether rays go on from them.
     pub(super) fn stale(&self, scene: &Scene, change: &Change) -> Vec<(u16, bool)> {
         let pairs = scene.materials.iter().zip(&change.materials).enumerate();
         let stale = pairs.filter_map(|(i, (new, &before))| {
             let before = before?;
             let leads = !new.transmit.is_black() || new.weighs_branches();
             let differs = new.ior != self.iors[before as usize] && scene.ior_matters(i);
-            differs.then_some((before, leads))
+            let (lobes, matter) = (self.lobes[before as usize], new.lobes_matter());
+            let blurs = (0..2).any(|k| matter[k] && new.lobes()[k] != lobes[k]);
+            (differs || blurs).then_some((before, leads || blurs))
         });
         stale.collect()
     }

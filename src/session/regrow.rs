@@ -16,19 +16,19 @@ use crate::fold::stay::Stay;
 use crate::fold::transport::{Transport, TransportTile};
 use crate::fold::trie::{Marks, Trie};
 use crate::fold::{Folded, Folder, Names};
-use crate::forest::Forest;
 use crate::forest::again::Again;
 use crate::forest::grow::{Grower, RayCounts, Worker};
 use crate::forest::kept::KeptTrees;
 use crate::forest::scope::Scope;
 use crate::forest::tree::TileTrees;
+use crate::forest::{Before, Forest};
 use crate::geometry::Geometry;
 use crate::math::exposure_factor;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::scene::change::Change;
 use crate::scene::factor::FactorValues;
-use crate::scene::model::Peak;
+use crate::scene::model::{Lobes, Peak};
 use crate::shade::cpu;
 use crate::shade::terms::{TermProgram, TermValues};
 
@@ -45,10 +45,12 @@ pub struct Regrow {
     /// What stays of the matrix, if the plan has a scope. Taken as the plan is carried out, so that the
     /// session alone has its tiles when it merges the patches.
     base: Mutex<Option<Base>>,
-    /// Per solid, of the kept trees.
-    iors_before: Vec<f64>,
+    /// With what the kept trees were grown.
+    before: Before,
     /// Per material of the new scene, of the trees when all is done.
     iors_after: Vec<f64>,
+    /// The same of lobes.
+    lobes_after: Vec<Lobes>,
     budget: usize,
     /// Bytes kept, those of the patches' trees included.
     kept: AtomicUsize,
@@ -101,8 +103,9 @@ impl Session {
             keys,
             geometry,
             forest: self.forest.clone(),
-            iors_before: self.geometry.of_solids(&self.iors),
+            before: self.turns(),
             iors_after: self.iors_after(&scene, change),
+            lobes_after: self.lobes_after(&scene, change),
             kept: AtomicUsize::new(self.kept_bytes() as usize),
             replaced: AtomicUsize::new(0),
             budget: usize::try_from(self.options.memory).unwrap_or(usize::MAX),
@@ -138,6 +141,18 @@ impl Session {
         after.collect()
     }
 
+    /// The same of lobes.
+    fn lobes_after(&self, scene: &Scene, change: &Change) -> Vec<Lobes> {
+        let pairs = scene.materials.iter().zip(&change.materials);
+        let after = pairs.map(|(new, before)| {
+            let before = before.map_or(new.lobes(), |before| self.lobes[before as usize]);
+            let (lobes, matter) = (new.lobes(), new.lobes_matter());
+            let stands = |k: usize| matter[k] || before[k] == lobes[k];
+            [0, 1].map(|k| if stands(k) { lobes[k] } else { f32::NAN })
+        });
+        after.collect()
+    }
+
     /// Puts the patches of a plan that was carried out in place: from now on its scene is the
     /// session's. On an error nothing has changed, but for trees that were released.
     pub(super) fn commit(
@@ -166,6 +181,7 @@ impl Session {
             self.keys_in_trees = self.keys.clone();
         }
         self.iors = regrow.iors_after.clone();
+        self.lobes = regrow.lobes_after.clone();
         self.program = TermProgram::new(&self.transport.trie);
         self.release_to_budget();
         self.redraw();
@@ -278,7 +294,7 @@ impl Regrow {
         progress.begin(self.plan.tiles.len() as u64);
         let base = self.base.lock().unwrap_or_else(PoisonError::into_inner).take();
         let grower =
-            Grower::recalling(&self.scene, &self.geometry, self.keys.clone(), &self.iors_before);
+            Grower::recalling(&self.scene, &self.geometry, self.keys.clone(), &self.before);
         let next = AtomicUsize::new(0);
         let results = pool.broadcast(|_| -> Result<(), TraceError> {
             let mut scratch = Scratch {

@@ -22,6 +22,7 @@ pub(super) fn text(cost: Option<Cost>) -> String {
         Some(Cost::InstantDownTo(x, _) | Cost::RereadBelow(x, _)) => {
             format!("instant ≥ {}", rounded(x, f64::ceil))
         }
+        Some(Cost::InstantAboveZero(_)) => "instant > 0".into(),
         Some(Cost::Refold) => "refold".into(),
         Some(Cost::Reread(pixels)) => format!("rereads {}", share(pixels)),
         Some(Cost::Regrow(pixels)) => format!("traces {}", share(pixels)),
@@ -52,6 +53,12 @@ pub(super) fn explanation(cost: Option<Cost>) -> String {
             "Instant down to {}; below that total reflection may show: the kept ray trees of {} of \
              the pixels are read again{}",
             rounded(x, f64::ceil),
+            share(pixels),
+            rays(pixels)
+        ),
+        Some(Cost::InstantAboveZero(pixels)) => format!(
+            "Instant for every distance; 0, which is no falloff, reads the kept ray trees of {} of the \
+             pixels again{}",
             share(pixels),
             rays(pixels)
         ),
@@ -111,7 +118,7 @@ fn price(cost: Option<Cost>) -> Price {
         None => Price::Unknown,
         Some(Cost::Instant) => Price::Free,
         Some(Cost::InstantUpTo(..) | Cost::InstantDownTo(..)) => Price::Mixed,
-        Some(Cost::RereadBelow(..)) => Price::Mixed,
+        Some(Cost::RereadBelow(..) | Cost::InstantAboveZero(_)) => Price::Mixed,
         Some(Cost::Refold | Cost::Reread(_)) => Price::Mixed,
         Some(Cost::Regrow(_) | Cost::TraceAll) => Price::Dear,
     }

@@ -34,12 +34,12 @@ pub(super) struct Globe {
 /// Where the light is on a picture of `size` pixels; `None` for a point behind the eye.
 pub(super) fn spot(view: &View, size: [u32; 2], place: &LightPlace) -> Option<Spot> {
     let size = dvec2(size[0].into(), size[1].into());
+    if let Some(anchor) = place.anchor() {
+        let at = DVec2::from(view.project(anchor)?.at);
+        let inside = at.cmpge(DVec2::ZERO).all() && at.cmple(size).all();
+        return Some(Spot { at, inside, globe: None });
+    }
     match place {
-        LightPlace::Point(point) => {
-            let at = DVec2::from(view.project(*point)?.at);
-            let inside = at.cmpge(DVec2::ZERO).all() && at.cmple(size).all();
-            Some(Spot { at, inside, globe: None })
-        }
         LightPlace::Direction(along) => {
             let (center, radius) = (size / 2.0, GLOBE * size.min_element());
             let from = source(view, *along)?;
@@ -47,11 +47,12 @@ pub(super) fn spot(view: &View, size: [u32; 2], place: &LightPlace) -> Option<Sp
             let at = center + from.truncate() * radius;
             Some(Spot { at, inside: true, globe: Some(globe) })
         }
+        _ => None,
     }
 }
 
-/// The place of a light whose handle was moved by `moved` pixels: a point parallel to the picture, or
-/// `along` the view, downwards nearer; a direction around the globe.
+/// The place of a light whose handle was moved by `moved` pixels: its anchor parallel to the picture,
+/// or `along` the view, downwards nearer; a direction around the globe.
 pub(super) fn carried(
     view: &View,
     size: [u32; 2],
@@ -59,18 +60,17 @@ pub(super) fn carried(
     moved: DVec2,
     along: bool,
 ) -> LightPlace {
-    match place {
-        LightPlace::Point(point) => match view.project(*point) {
-            Some(seen) => LightPlace::Point(carried_point(view, size, seen, moved, along)),
-            None => place.clone(),
-        },
-        LightPlace::Direction(direction) => {
+    let seen = place.anchor().and_then(|anchor| view.project(anchor));
+    match (place, seen) {
+        (_, Some(seen)) => place.anchored_at(carried_point(view, size, seen, moved, along)),
+        (LightPlace::Direction(direction), None) => {
             let radius = GLOBE * f64::from(size[0].min(size[1]));
             match turned(view, *direction, moved / radius) {
                 Some(direction) => LightPlace::Direction(direction),
                 None => place.clone(),
             }
         }
+        _ => place.clone(),
     }
 }
 

@@ -144,7 +144,7 @@ fn value_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> bool {
 
 /// Whether a geometric number has a natural span for a slider.
 fn has_slider(key: &str) -> bool {
-    matches!(key, "ior" | "fov_degrees" | "shutter")
+    matches!(key, "ior" | "fov_degrees" | "shutter" | "falloff" | "angle_degrees" | "edge")
 }
 
 /// A slider with a number field. Typed numbers may leave the slider's span, not the range.

@@ -177,14 +177,16 @@ impl Handles {
 
     /// A tooltip with what moving the handle does and costs.
     fn explain(&mut self, response: Response, stage: &Stage<'_>, light: &Light) {
-        let (key, about) = match light.place {
-            LightPlace::Point(_) => ("point", POINT),
-            LightPlace::Direction(_) => ("direction", DIRECTION),
+        let about = match light.place {
+            LightPlace::Direction(_) => DIRECTION,
+            LightPlace::Spot { .. } => SPOT,
+            LightPlace::Point(_) | LightPlace::Area(_) => POINT,
         };
         if !response.hovered() && !response.has_focus() {
             return;
         }
-        let path = join(&join("lights", &light.name), key);
+        let list = join("lights", &light.name);
+        let path = light.place.anchor_keys().iter().fold(list, |path, key| join(&path, key));
         response.on_hover_cursor(CursorIcon::Grab).on_hover_ui(|ui| {
             ui.strong(format!("light {}", light.name));
             ui.label(about);
@@ -196,6 +198,9 @@ impl Handles {
 
 const POINT: &str = "Drag moves it parallel to the picture, Shift-drag farther (up) or nearer (down); \
                      the arrow keys do the same. A click shows its parameters";
+const SPOT: &str = "Drag moves it parallel to the picture, Shift-drag farther (up) or nearer (down); it \
+                    keeps shining at the same point. The arrow keys do the same. A click shows its \
+                    parameters";
 const DIRECTION: &str = "It shines from this point of the globe towards the middle. Drag turns it, \
                          beyond the rim to the far side; so do the arrow keys. A click shows its \
                          parameters";

@@ -23,7 +23,10 @@ pub(super) fn about(key: &str) -> &'static str {
         "shutter" => "Share of the solids' motion that the picture sees; 0: it stands still",
         "size" => "Width and height in pixels; of a checker: side of a cube, in units of the scene",
         "exposure" => "Brightness of the picture in stops: +1 doubles it",
-        "samples" => "Camera rays per pixel: more give smoother edges",
+        "samples" => {
+            "Rays, of a picture from the eye through every pixel, of a light with an area from every \
+             point to it: more give smoother edges"
+        }
         "adaptive" => {
             "0: every pixel gets all samples; above: only pixels whose first samples differ more than this"
         }
@@ -32,6 +35,16 @@ pub(super) fn about(key: &str) -> &'static str {
         "color" => "Colour, linear Rec. 709",
         "point" => "Where the light is",
         "direction" => "The direction in which the light shines",
+        "at" => "Where the light is",
+        "towards" => "A point that the light shines at",
+        "angle_degrees" => "Angle between the middle and the rim of the cone of light, in degrees",
+        "edge" => "The outer part of the angle in which the light fades: 0 for a sharp rim",
+        "along" => "One edge of the rectangle, from corner to corner",
+        "across" => "The other edge of the rectangle",
+        "falloff" => {
+            "The distance at which the light has its intensity, beyond which it weakens with the \
+             square of the distance; 0: equally strong everywhere"
+        }
         "intensity" => "Strength of the light: a surface that faces it shows diffuse times this",
         "on" => "Whether the light shines",
         "kloc" => {
@@ -51,6 +64,12 @@ pub(super) fn about(key: &str) -> &'static str {
              mirrored at grazing angles"
         }
         "metallic" => "0: white highlights; 1: highlights in the colour of the surface",
+        "gloss" => {
+            "How sharp the mirror image is: an exponent, lower is blurrier; 0 is perfectly sharp"
+        }
+        "translucency" => {
+            "How sharp what shines through is: an exponent, lower is blurrier; 0 is perfectly sharp"
+        }
         "emission" => "Light that the surface gives off by itself",
         "reflect" => "Share of the mirror image",
         "transmit" => "Share of what is seen through the surface",
@@ -62,9 +81,9 @@ pub(super) fn about(key: &str) -> &'static str {
         "a" => "Colour of the first kind of squares",
         "b" => "Colour of the second kind of squares",
         "material" => "The material of the solid",
-        "center" => "Centre, in the solid's own coordinates",
+        "center" => "Centre, of a solid in its own coordinates",
         "radius" => "Radius",
-        "normal" => "Points out of the solid; its length does not matter",
+        "normal" => "Points out of the solid, or stands on the disc; its length does not matter",
         "offset" => "Distance of the plane from the origin along its normal",
         "min" => "Lowest corner",
         "max" => "Highest corner",
@@ -98,6 +117,12 @@ pub(super) fn choice(name: &str) -> &'static str {
         "tent" => "Nearer light counts more, up to the next pixel's centre: smooth",
         "mitchell" => "Sharp and smooth; beside strong edges it may overshoot a little",
         "gaussian" => "Very smooth, a little soft",
+        "point" => "A light at a point, in all directions",
+        "direction" => "A light infinitely far away",
+        "spot" => "A light at a point, into a cone",
+        "rectangle" => "A light all over a rectangle: soft shadows",
+        "disc" => "A light all over a disc: soft shadows",
+        "sphere" => "A light as large as a ball: soft shadows",
         _ => "",
     }
 }
@@ -118,7 +143,9 @@ pub(super) struct Scale {
 /// The slider for a parameter, wide enough for its present value.
 pub(super) fn scale(key: &str, range: Range, value: f64) -> Scale {
     let (low, high, logarithmic) = match key {
-        "shininess" => (0.0, 1000.0, true),
+        "shininess" | "gloss" | "translucency" => (0.0, 1000.0, true),
+        "falloff" => (0.0, 20.0, false),
+        "angle_degrees" => (1.0, 90.0, false),
         "ior" => (1.0, 2.5, false),
         "exposure" => (-5.0, 5.0, false),
         "intensity" => (0.0, 2.0, false),
@@ -135,7 +162,7 @@ pub(super) fn scale(key: &str, range: Range, value: f64) -> Scale {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::fields::{LENSES, PLACES, SHAPES};
+    use crate::scene::fields::{LENSES, SHAPES};
     use crate::scene::filter::Filter;
     use crate::scene::model::Model;
     use crate::scene::path::parameters;
@@ -144,9 +171,9 @@ mod tests {
     #[test]
     fn every_parameter_is_explained() {
         let mut scene = Scene::default();
-        for (i, key) in PLACES.iter().enumerate() {
-            let name = format!("l{i}");
-            scene.lights.push(Light { place: LightPlace::named(key), ..Light::new(name) });
+        for kind in LightPlace::KINDS {
+            scene.lights.push(Light { place: LightPlace::of_kind(kind), ..Light::new(kind) });
+            assert!(!choice(kind).is_empty(), "{kind}");
         }
         scene.materials.push(Material::new("plain"));
         scene.materials.push(Material { paint: Paint::named("texture"), ..Material::new("tex") });

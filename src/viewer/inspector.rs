@@ -7,6 +7,7 @@ use eframe::egui::{Button, RichText, ScrollArea, Ui};
 use super::badge::badge_ui;
 use super::command::Command;
 use super::control::{BADGE, Row, control_ui};
+use super::kind::kind_ui;
 use super::lists::{Subject, offer_ui};
 use crate::document::things::{Thing, users};
 use crate::scene::Scene;
@@ -172,6 +173,9 @@ pub(super) fn inspector_ui(
     links_ui(ui, scene, selection, &mut outcome);
     things_ui(ui, scene, selection, known, &mut outcome);
     ui.separator();
+    if let Selection::Light(i) = selection {
+        outcome.changed |= kind_ui(ui, &mut scene.lights[i], known.costs);
+    }
     let names = Names::of(&scene.materials);
     let saved = texts(known.saved, same_name(scene, known.saved, selection));
     ScrollArea::vertical().auto_shrink(false).id_salt(selection).show(ui, |ui| {

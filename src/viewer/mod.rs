@@ -14,6 +14,7 @@ mod handles;
 mod hints;
 mod inspector;
 mod keep;
+mod kind;
 mod lists;
 pub mod measure;
 mod menu;

@@ -32,7 +32,7 @@ pub const ENDING: &str = "rayforest-cache";
 
 /// To be raised whenever the same scene gives other bits than before: another tracer, kernel or
 /// order of samples or terms. Caches of before are then stale.
-const NUMBERS: u32 = 1;
+const NUMBERS: u32 = 2;
 
 /// Where the cache of a scene file is: `scenes/room.toml` has `scenes/room.rayforest-cache`.
 pub fn path_of(scene: &Path) -> PathBuf {

@@ -72,7 +72,7 @@ impl Session {
             trace,
             report: _,
         } = cached;
-        let State { keys, keys_in_trees, lights, iors, counts: _ } = state;
+        let State { keys, keys_in_trees, lights, iors, lobes, counts: _ } = state;
         let mut session = Session {
             canvas: Canvas::new(scene.picture.size),
             scene: Arc::new(scene),
@@ -88,6 +88,7 @@ impl Session {
             keys_in_trees,
             names: Names { materials: geometry.materials().to_vec(), lights },
             iors,
+            lobes,
             trace,
             geometry_seconds,
             geometry: Arc::new(geometry),

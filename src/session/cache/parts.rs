@@ -11,6 +11,7 @@ use crate::forest::grow::RayCounts;
 use crate::forest::kept::{KeptLight, KeptNode, KeptStart, KeptTrees};
 use crate::forest::tree::{Branch, Ends};
 use crate::scene::factor::{Factor, Kind};
+use crate::scene::model::Lobes;
 use crate::session::Session;
 use crate::session::trace::TraceReport;
 
@@ -80,6 +81,8 @@ pub(super) struct State {
     pub(super) lights: Vec<u16>,
     /// Per material the index of refraction with which its nodes stand in the trees.
     pub(super) iors: Vec<f64>,
+    /// Per material the lobes with which they stand there: of the mirror rays, of the refracted ones.
+    pub(super) lobes: Vec<Lobes>,
     /// Where sampling is adaptive, the number of samples of every pixel, tile after tile.
     pub(super) counts: Vec<u16>,
 }
@@ -92,6 +95,7 @@ impl State {
             keys_in_trees: session.keys_in_trees.clone(),
             lights: session.names.lights.clone(),
             iors: session.iors.clone(),
+            lobes: session.lobes.clone(),
             counts: session.map.as_ref().map_or(Vec::new(), |map| map.to_list()),
         }
     }
@@ -99,25 +103,29 @@ impl State {
 
 /// Writes the terms and what their factors stand for.
 pub(super) fn put_terms(trie: &Trie, state: &State, out: &mut Section) {
-    let State { keys, keys_in_trees, lights, iors, counts } = state;
+    let State { keys, keys_in_trees, lights, iors, lobes, counts } = state;
     out.array(trie.nodes());
     out.array(keys);
     out.array(keys_in_trees);
     out.array(lights);
     out.array(iors);
+    let [gloss, translucency] = [0, 1].map(|k| lobes.iter().map(|l| l[k]).collect::<Vec<_>>());
+    out.array(&gloss);
+    out.array(&translucency);
     out.array(counts);
 }
 
 /// Reads the terms and what their factors stand for.
 pub(super) fn take_terms(from: &mut Source) -> Result<(Trie, State), Unsound> {
     let trie = Trie::from_canonical(from.array::<TrieNode>()?).ok_or("they are out of order")?;
-    let state = State {
-        keys: from.array()?,
-        keys_in_trees: from.array()?,
-        lights: from.array()?,
-        iors: from.array()?,
-        counts: from.array()?,
-    };
+    let (keys, keys_in_trees, lights) = (from.array()?, from.array()?, from.array()?);
+    let (iors, gloss, translucency) = (from.array()?, from.array::<f32>()?, from.array::<f32>()?);
+    if gloss.len() != translucency.len() {
+        return Err("not both lobes of every material");
+    }
+    let lobes = gloss.into_iter().zip(translucency).map(|(g, t)| [g, t]).collect();
+    let counts = from.array()?;
+    let state = State { keys, keys_in_trees, lights, iors, lobes, counts };
     Ok((trie, state))
 }
 

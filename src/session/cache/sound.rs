@@ -9,10 +9,10 @@ use crate::fold::transport::{
 };
 use crate::fold::trie::{Marks, ROOT, Trie, TrieNode};
 use crate::forest::kept::{KeptLight, KeptNode, KeptStart, KeptTrees};
-use crate::forest::tree::{BLOCKED, Branch};
+use crate::forest::tree::{Branch, entries};
 use crate::geometry::Geometry;
 use crate::scene::factor::{Factor, Kind};
-use crate::scene::fields::DEPTH;
+use crate::scene::fields::{DEPTH, EXPONENT};
 use crate::scene::{Paint, Scene};
 
 /// `what` unless it holds.
@@ -63,9 +63,13 @@ fn is_of(factor: Factor, slots: &[usize]) -> bool {
 
 /// Whether a session may know this of a scene.
 pub(super) fn state(state: &State, scene: &Scene) -> Result<(), Unsound> {
-    let State { keys, keys_in_trees, lights, iors, counts: _ } = state;
+    let State { keys, keys_in_trees, lights, iors, lobes, counts: _ } = state;
     let each = [keys.len(), lights.len()] == [scene.lights.len(); 2];
-    ensure(each && iors.len() == scene.materials.len(), "of another scene")?;
+    let materials = [iors.len(), lobes.len()] == [scene.materials.len(); 2];
+    ensure(each && materials, "of another scene")?;
+    let exponent = |n: &f32| n.is_nan() || EXPONENT.contains(f64::from(*n));
+    let exponents = lobes.iter().flatten().all(exponent);
+    ensure(exponents, "a lobe has no exponent")?;
     let mut sorted = keys.clone();
     sorted.sort_unstable();
     ensure(sorted.is_sorted_by(|a, b| a < b), "two lights have one key")?;
@@ -232,7 +236,7 @@ impl Walk<'_> {
             let KeptLight { key, crossed } = *light;
             ensure(within.keys[usize::from(key)], "a light record with an unknown key")?;
             let from = self.at.crossing as usize;
-            let count = if crossed == BLOCKED { 1 } else { usize::from(crossed) };
+            let count = entries(crossed);
             let solids = self.trees.crossings.get(from..from + count).ok_or(CUT)?;
             let known = solids.iter().all(|&solid| (solid as usize) < within.solids);
             ensure(known, "an unknown solid")?;
@@ -246,7 +250,7 @@ impl Walk<'_> {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::forest::tree::Ends;
+    use crate::forest::tree::{BEHIND, Ends};
     use crate::progress::Progress;
     use crate::scene::model::Model;
     use crate::scene::read;
@@ -356,6 +360,10 @@ pub(super) mod tests {
         assert_eq!(fault(|s| s.iors[0] = f64::NAN), Ok(()));
         assert_eq!(fault(|s| s.iors[0] = 0.0), Err("an index of refraction is not above 0"));
         assert_eq!(fault(|s| s.iors.push(1.0)), Err("of another scene"));
+        assert_eq!(fault(|s| _ = s.lobes.pop()), Err("of another scene"));
+        assert_eq!(fault(|s| s.lobes[1] = [0.0, f32::NAN]), Ok(()));
+        assert_eq!(fault(|s| s.lobes[1][1] = f32::INFINITY), Err("a lobe has no exponent"));
+        assert_eq!(fault(|s| s.lobes[0][0] = -1.0), Err("a lobe has no exponent"));
         assert_eq!(fault(|s| _ = s.keys.pop()), Err("of another scene"));
         assert_eq!(fault(|s| s.keys[0] = s.keys[1]), Err("two lights have one key"));
         assert_eq!(fault(|s| s.keys_in_trees.extend([9, 7])), Ok(()));
@@ -413,7 +421,7 @@ pub(super) mod tests {
             }),
             ("an unknown solid", |t| t.crossings[0] = u32::MAX),
             ("a light record with an unknown key", |t| t.lights[3].key = u16::MAX),
-            ("trees end too early", |t| t.lights[0].crossed = BLOCKED - 1),
+            ("trees end too early", |t| t.lights[0].crossed = BEHIND - 1),
         ];
         let within = Surroundings::new(session.scene(), session.geometry(), &session.keys_in_trees);
         let trees = session.forest().tiles[0].as_deref().unwrap();

@@ -9,11 +9,16 @@ use rayforest::scene::{Lens, Light, Material, Paint, Scene, read};
 use rayforest::session::{Class, Session};
 
 use super::comes_alive::comes_alive;
-use super::table::{GLOSSY, LENS, MODELS, OPEN, ROWS, Row, SCENE};
+use super::table::{GLOSSY, LAMPS, LENS, MODELS, OPEN, ROWS, Row, SCENE};
 use super::{assert_same_picture, open, set};
 
 fn all_kinds() -> Scene {
     read::text(SCENE, Path::new("all-kinds.toml")).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Lights of the other kinds, and blurred rays.
+fn lamps() -> Scene {
+    read::text(LAMPS, Path::new("lamps.toml")).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// The same from infinitely far away.
@@ -150,10 +155,48 @@ fn from_infinitely_far_away_too() {
     hold_to_table(&parallel());
 }
 
+/// Of lights of all kinds, and of materials whose rays are blurred.
+#[test]
+fn lights_and_lobes_cost_what_the_table_says() {
+    let first = open(&lamps(), 2);
+    for parameter in parameters(&lamps()) {
+        if parameter.path.starts_with("lights.") {
+            take_steps(&first, &parameter, row_of(ROWS, &parameter.path).unwrap());
+        }
+    }
+}
+
+/// While nothing is mirrored a lobe costs nothing; it is made up for when something is.
+#[test]
+fn a_lobe_that_did_not_matter() {
+    let mut session = open(&all_kinds(), 2);
+    let mut scene = all_kinds();
+    let mut edit = |path: &str, value: &str, class: Class| {
+        set(&mut scene, path, value);
+        edit_is(&mut session, scene.clone(), class, &format!("{path} = {value}"));
+    };
+    edit("materials.mirror.reflect", "0", Class::Reshade);
+    edit("materials.mirror.gloss", "30", Class::None);
+    edit("materials.mirror.reflect", "0.3", Class::Regrow);
+    edit("materials.mirror.reflect", "0", Class::Reshade);
+    edit("materials.mirror.gloss", "9", Class::None);
+    edit("lights.key.point", "[-4, -5, 7.5]", Class::Regrow);
+    edit("materials.mirror.gloss", "30", Class::None);
+    edit("materials.mirror.reflect", "0.5", Class::Regrow);
+    edit("materials.glass.translucency", "50", Class::Regrow);
+    edit("materials.glass.transmit", "0", Class::Reshade);
+    edit("materials.glass.translucency", "0", Class::None);
+    edit("materials.tiles.reflect", "0.3", Class::Regrow);
+    edit("materials.tiles.gloss", "12", Class::Regrow);
+    edit("materials.glass.transmit", "0.7", Class::Regrow);
+    edit("solids.cube.material", "mirror", Class::Regrow);
+}
+
 #[test]
 fn every_row_is_the_row_of_a_parameter() {
     let mut paths: Vec<String> = parameters(&all_kinds()).into_iter().map(|p| p.path).collect();
     paths.extend(parameters(&parallel()).into_iter().map(|p| p.path));
+    paths.extend(parameters(&lamps()).into_iter().map(|p| p.path));
     for row in ROWS {
         let used = paths.iter().any(|p| row_of(ROWS, p).is_ok_and(|r| r.path == row.path));
         assert!(used, "row `{}` is for nothing", row.path);

@@ -2,7 +2,7 @@
 
 use rayforest::forest::Forest;
 use rayforest::forest::kept::KeptTrees;
-use rayforest::forest::tree::{BLOCKED, Branch};
+use rayforest::forest::tree::{BLOCKED, Branch, entries};
 use rayforest::scene::Scene;
 use rayforest::scene::factor::FactorValues;
 use rayforest::session::Session;
@@ -41,8 +41,9 @@ impl<'a> Cursor<'a> {
 
     /// The witness that stopped the next light's shadow ray, if one did.
     fn witness(&mut self) -> Option<u32> {
-        let blocked = self.trees.lights[self.light].crossed == BLOCKED;
-        let count = if blocked { 1 } else { usize::from(self.trees.lights[self.light].crossed) };
+        let crossed = self.trees.lights[self.light].crossed;
+        let blocked = crossed == BLOCKED;
+        let count = entries(crossed);
         let first = self.trees.crossings.get(self.crossing).copied();
         self.light += 1;
         self.crossing += count;

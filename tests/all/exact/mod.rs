@@ -7,6 +7,7 @@ mod classes;
 mod comes_alive;
 mod floors;
 mod histories;
+mod lamps;
 mod memory;
 mod parts;
 pub(crate) mod random;
@@ -44,8 +45,8 @@ fn scenes() -> PathBuf {
 }
 
 /// The shipped scenes by the stem of their file.
-const SHIPPED: [&str; 8] =
-    ["whitted", "plain", "glass", "gems", "flake", "mesh", "mirrors", "motion"];
+const SHIPPED: [&str; 9] =
+    ["whitted", "plain", "glass", "gems", "flake", "mesh", "mirrors", "motion", "studio"];
 
 /// A shipped scene as a small picture; the knot with fewer triangles, the flake with fewer spheres.
 fn shipped(name: &str, size: [u32; 2], samples: u32) -> Scene {
@@ -54,7 +55,7 @@ fn shipped(name: &str, size: [u32; 2], samples: u32) -> Scene {
     set(&mut scene, "picture.size", &format!("[{}, {}]", size[0], size[1]));
     set(&mut scene, "trace.samples", &samples.to_string());
     match name {
-        "mesh" => set(&mut scene, "solids.knot.knot.segments", "[90, 12]"),
+        "mesh" | "studio" => set(&mut scene, "solids.knot.knot.segments", "[90, 12]"),
         "flake" => set(&mut scene, "solids.flake.sphereflake.levels", "4"),
         _ => {}
     }

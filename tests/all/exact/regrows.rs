@@ -17,6 +17,7 @@ use rayforest::session::trace::TraceError;
 use rayforest::session::{Class, Options, Session, Work};
 
 use super::random::Random;
+use super::table::LAMPS;
 use super::{assert_same_picture, open, options, set, shipped};
 
 const EDITS: usize = 30;
@@ -33,13 +34,15 @@ fn edited(scene: &Scene, random: &mut Random) -> (Scene, String) {
     let material = random.below(scene.materials.len());
     let name = scene.materials[material].name.clone();
     let weights = ["0", "0.003", "0.02", "0.3", "[0.5, 0, 0.2]", "0.8", "1.2"];
-    let words = match random.below(17) {
+    let blurs = scene.materials.iter().any(|m| m.lobes() != [0.0; 2]);
+    let words = match random.below(if blurs { 22 } else { 17 }) {
         0 if lights > 0 => {
             let light = &mut edited.lights[random.below(lights)];
             let by = glam::DVec3::new(random.unit(), random.unit(), random.unit()) - 0.4;
-            match &mut light.place {
-                LightPlace::Point(place) | LightPlace::Direction(place) => *place += by,
-            }
+            light.place = match &light.place {
+                LightPlace::Direction(along) => LightPlace::Direction(*along + by),
+                place => place.anchored_at(place.anchor().expect("it is no direction") + by),
+            };
             format!("{} moved by {by}", light.name)
         }
         1 if lights < 4 => {
@@ -84,6 +87,33 @@ fn edited(scene: &Scene, random: &mut Random) -> (Scene, String) {
         }
         12 => {
             set_to(&mut edited, &format!("materials.{name}.shininess"), random.pick(&["3", "40"]))
+        }
+        17 if lights > 0 => {
+            let name = scene.lights[random.below(lights)].name.clone();
+            set_to(&mut edited, &format!("lights.{name}.falloff"), random.pick(&["0", "2.5", "6"]))
+        }
+        18 if lights > 0 => {
+            let name = scene.lights[random.below(lights)].name.clone();
+            set_to(&mut edited, &format!("lights.{name}.samples"), random.pick(&["1", "2", "5"]))
+        }
+        19 => {
+            let value = random.pick(&["0", "6", "90"]);
+            set_to(&mut edited, &format!("materials.{name}.gloss"), value)
+        }
+        20 => {
+            let value = random.pick(&["0", "6", "90"]);
+            set_to(&mut edited, &format!("materials.{name}.translucency"), value)
+        }
+        21 if lights > 0 => {
+            let light = &mut edited.lights[random.below(lights)];
+            light.place = match &light.place {
+                LightPlace::Spot { at, towards, angle_degrees: _, edge } => {
+                    let angle_degrees = 5.0 + 40.0 * random.unit();
+                    LightPlace::Spot { at: *at, towards: *towards, angle_degrees, edge: *edge }
+                }
+                place => place.turned_into(random.pick(&LightPlace::KINDS)),
+            };
+            format!("{} is a {:?}", light.name, light.place)
         }
         _ => {
             let used = |m: usize| scene.solids.iter().any(|solid| solid.material == m);
@@ -353,6 +383,17 @@ fn pixels_whose_samples_cancel_are_named() {
         }
     }
     assert!(shown > 100, "{shown}");
+}
+
+#[test]
+fn studio() {
+    wander("studio", &small("studio"), None);
+}
+
+#[test]
+fn lamps() {
+    let scene = read::text(LAMPS, Path::new("lamps.toml")).unwrap();
+    wander("lamps", &scene, None);
 }
 
 #[test]

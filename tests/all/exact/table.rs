@@ -72,6 +72,70 @@ ring = { knot = { turns = [2, 3], tube = 0.3, segments = [30, 8] }, material = "
 flake = { sphereflake = { center = [-1.15, -1.5, 0.8], radius = 0.3, levels = 2 }, material = "mirror" }
 "#;
 
+/// A scene with every kind of light that [`SCENE`] lacks, and with blurred rays.
+pub(super) const LAMPS: &str = r#"
+version = 1
+ambient_light = [0.9, 1.0, 0.8]
+
+[picture]
+size = [40, 26]
+
+[camera]
+eye = [0.2, -7, 2.6]
+target = [0, 0, 0.7]
+up = [0, 0, 1]
+fov_degrees = 40
+
+[background]
+color = [0.2, 0.3, 0.5]
+
+[trace]
+samples = 2
+depth = 3
+cutoff = 0.01
+
+[lights]
+panel = { area = { rectangle = { center = [-2, -3, 4], along = [1, 0.5, 0], across = [0, 1, 1] } }, samples = 5, intensity = 0.8 }
+cone = { spot = { at = [3, -3, 5], towards = [0.3, 0, 0.5], angle_degrees = 20, edge = 0.5 }, falloff = 5 }
+lamp = { area = { disc = { center = [0, 2, 1.5], normal = [0, -1, 0.3], radius = 0.8 } }, samples = 3, intensity = 0.4, falloff = 3 }
+key = { point = [-4, -5, 7], color = [1, 0.9, 0.8], intensity = 0.3 }
+ball = { area = { sphere = { center = [2, -2, 3], radius = 0.7 } }, color = [0.5, 1, 1], intensity = 0.3 }
+
+[materials.tiles]
+texture = { checker = { a = [0.9, 0.8, 0.2], b = [0.5, 0.1, 0.1], size = 0.7 } }
+reflect = 0.3
+gloss = 40
+
+[materials.plain]
+color = [0.3, 0.6, 0.4]
+model = "hall"
+specular = 0.3
+transmit = 0.3
+translucency = 15
+
+[materials.mirror]
+diffuse = 0.3
+specular = 0.6
+shininess = 80
+reflect = 0.5
+gloss = 200
+
+[materials.glass]
+diffuse = 0.02
+specular = 0.8
+reflect = 0.12
+transmit = 0.8
+filter = [1, 0.7, 0.6]
+gloss = 9
+translucency = 60
+
+[solids]
+floor = { plane = { normal = [0, 0, 1], offset = 0 }, material = "tiles" }
+ball = { sphere = { center = [-1.4, 1.2, 0.9], radius = 0.9 }, material = "mirror" }
+bulb = { sphere = { center = [0.2, -1.6, 0.8], radius = 0.7 }, material = "glass" }
+cube = { box = { min = [0, 0, 0], max = [0.8, 0.8, 1.2] }, material = "plain" }
+"#;
+
 /// What of [`SCENE`] is another illumination model, for [`GLOSSY`].
 pub(super) const MODELS: [(&str, &str); 7] = [
     ("materials.plain.model", "blinn"),
@@ -144,6 +208,13 @@ const CELL: &[(&str, Class)] = &[("0.25", Refold), ("1", Refold), ("1.5", Refold
 /// Fresnel's weight makes branches fainter; without it some may come alive.
 const WEIGHS_MIRROR: &[(&str, Class)] =
     &[("blinn", Refold), ("cook_torrance", Refold), ("hall", Refold), ("@", Regrow)];
+const FALLOFF_FROM_NONE: &[(&str, Class)] =
+    &[("3", Refold), ("4", Reshade), ("0.5", Reshade), ("@", Refold)];
+const SHADOW_RAYS: &[(&str, Class)] = &[("2", Regrow), ("1", Regrow), ("7", Regrow), ("@", Regrow)];
+const PLACE: &[(&str, Class)] = &[("[0.4, -0.6, 3]", Regrow), ("@", Regrow)];
+/// The lobe of a ray that is cast.
+const BLUR: &[(&str, Class)] =
+    &[("20", Regrow), ("3", Regrow), ("1e6", Regrow), ("0", Regrow), ("@", Regrow)];
 const VECTOR: &[(&str, Class)] = &[("[0.1, -0.3, 0.8]", Retrace), ("@", Retrace)];
 const TURN: &[(&str, Class)] = &[("[0, 0, 15]", Retrace), ("@", Retrace)];
 const SCALE: &[(&str, Class)] =
@@ -209,6 +280,32 @@ pub(super) const ROWS: &[Row] = &[
             ("@", Reshade),
         ],
     ),
+    // A light that begins or ceases to fall off is read again from the kept trees.
+    row("lights.panel.falloff", FALLOFF_FROM_NONE),
+    row("lights.key.falloff", FALLOFF_FROM_NONE),
+    row("lights.ball.falloff", FALLOFF_FROM_NONE),
+    row("lights.sun.falloff", &[("3", Nothing), ("0", Nothing), ("@", Nothing)]),
+    row(
+        "lights.*.falloff",
+        &[("2", Reshade), ("1e12", Reshade), ("0", Refold), ("4", Refold), ("@", Reshade)],
+    ),
+    row("lights.panel.samples", SHADOW_RAYS),
+    row("lights.lamp.samples", SHADOW_RAYS),
+    row("lights.ball.samples", SHADOW_RAYS),
+    // Points and directions need no more than one ray.
+    row("lights.*.samples", &[("2", Nothing), ("1024", Nothing), ("@", Nothing)]),
+    row("lights.cone.spot.at", PLACE),
+    row("lights.cone.spot.towards", PLACE),
+    row("lights.cone.spot.angle_degrees", &[("9", Regrow), ("180", Regrow), ("@", Regrow)]),
+    row("lights.cone.spot.edge", &[("0", Regrow), ("1", Regrow), ("@", Regrow)]),
+    row("lights.panel.area.rectangle.center", PLACE),
+    row("lights.panel.area.rectangle.along", PLACE),
+    row("lights.panel.area.rectangle.across", PLACE),
+    row("lights.lamp.area.disc.center", PLACE),
+    row("lights.lamp.area.disc.normal", PLACE),
+    row("lights.lamp.area.disc.radius", &[("0.1", Regrow), ("2", Regrow), ("@", Regrow)]),
+    row("lights.ball.area.sphere.center", PLACE),
+    row("lights.ball.area.sphere.radius", &[("0.1", Regrow), ("2", Regrow), ("@", Regrow)]),
     row("lights.*.color", COLOR),
     row("lights.*.intensity", COLOR),
     row("lights.*.on", &[("false", Reshade), ("true", Reshade)]),
@@ -245,6 +342,13 @@ pub(super) const ROWS: &[Row] = &[
     row("materials.mirror.fresnel", &[("true", Refold), ("@", Regrow)]),
     row("materials.brass.fresnel", &[("true", Refold), ("@", Regrow)]),
     row("materials.*.fresnel", &[("true", Refold), ("@", Refold)]),
+    row("materials.mirror.gloss", BLUR),
+    row("materials.brass.gloss", BLUR),
+    row("materials.glass.gloss", BLUR),
+    row("materials.glass.translucency", BLUR),
+    // What neither mirrors nor transmits has nothing to blur.
+    row("materials.*.gloss", &[("20", Nothing), ("0.5", Nothing), ("@", Nothing)]),
+    row("materials.*.translucency", &[("20", Nothing), ("0.5", Nothing), ("@", Nothing)]),
     row("materials.glass.ior", &[("1", Regrow), ("0.8", Regrow), ("2.4", Regrow), ("@", Regrow)]),
     // Nothing passes through the others: only what is thinner than air or glass shows it.
     row(

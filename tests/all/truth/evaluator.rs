@@ -170,8 +170,10 @@ fn lamp(scene: &Scene, lit: &Lit, m: &Material, o: DVec3) -> DVec3 {
         _ => (1.0 - lit.angle).powf(m.shininess.into()),
     };
     let tint = if behind { rgb(m.transmit) * rgb(m.filter) } else { tint };
+    let arriving = if light.falls_off() { light.falloff.powi(2) } else { 1.0 };
     rgb(light.color)
         * rgb(light.intensity)
+        * arriving
         * shadow
         * (rgb(m.diffuse) * o * lit.n_dot_l.max(0.0) + rgb(m.specular) * tint * lit.weight * spread)
 }
@@ -251,6 +253,7 @@ fn new_value(
             r if r < 0.1 => "0".to_owned(),
             _ => scaled(value, &[0; 3].map(|_| reach * dice.roll())),
         },
+        "falloff" if value.parse::<f64>().ok()? > 0.0 => format!("{}", 0.1 + 6.0 * dice.roll()),
         "shininess" => format!("{}", 1000f64.powf(dice.roll())),
         "roughness" => format!("{}", 0.02f64.powf(dice.roll())),
         "metallic" => format!("{}", dice.roll()),

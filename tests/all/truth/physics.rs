@@ -3,7 +3,9 @@
 mod corridor;
 mod fresnel;
 mod furnace;
+mod gloss;
 mod models;
+mod penumbra;
 mod refraction;
 mod shadow;
 

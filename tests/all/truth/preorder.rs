@@ -1,7 +1,7 @@
 //! The trees read once more, by a reader of the tests' own, into plain recursive values.
 
 use rayforest::film::layout::{LANES, Place, TILE_BLOCKS};
-use rayforest::forest::tree::{BLOCKED, Branch, TileTrees};
+use rayforest::forest::tree::{BEHIND, BLOCKED, Branch, TileTrees, entries};
 use rayforest::progress::Progress;
 use rayforest::session::Session;
 
@@ -99,7 +99,7 @@ impl Cursor<'_> {
     fn tree(&mut self) -> Tree {
         let node = self.trees.nodes[self.node];
         self.node += 1;
-        let lights = (0..node.lights).map(|_| self.lit()).collect();
+        let lights = (0..node.lights).filter_map(|_| self.lit()).collect();
         let reflected = self.limb(node.ends.reflected());
         let transmitted = self.limb(node.ends.transmitted());
         Tree {
@@ -115,30 +115,32 @@ impl Cursor<'_> {
         }
     }
 
-    fn lit(&mut self) -> Lit {
+    /// The next light; none where a ray had nothing to show.
+    fn lit(&mut self) -> Option<Lit> {
         let hit = self.trees.lights[self.light];
         self.light += 1;
         let blocked = hit.crossed == BLOCKED;
-        let count = if blocked { 1 } else { usize::from(hit.crossed) };
+        let count = entries(hit.crossed);
         let solids = &self.trees.crossings[self.crossing..self.crossing + count];
         self.crossing += count;
         let mut materials: Vec<usize> =
             solids.iter().map(|&solid| self.materials[solid as usize]).collect();
         materials.sort_unstable();
-        Lit {
+        let lit = Lit {
             light: hit.light.into(),
             n_dot_l: hit.n_dot_l.into(),
             angle: hit.angle.into(),
             weight: hit.weight.into(),
             crossed: (!blocked).then_some(materials),
-        }
+        };
+        (hit.crossed != BEHIND).then_some(lit)
     }
 
     fn limb(&mut self, branch: Branch) -> Limb {
         match branch {
             Branch::Grown => Limb::Grown(Box::new(self.tree())),
             Branch::Missed => Limb::Missed,
-            Branch::Absent => Limb::Absent,
+            Branch::Absent | Branch::Astray => Limb::Absent,
             Branch::Zero | Branch::Weight | Branch::Depth | Branch::Faint => Limb::Cut(branch),
         }
     }

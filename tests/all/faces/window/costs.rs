@@ -51,6 +51,7 @@ fn words(cost: Cost) -> (String, Option<f64>) {
         Cost::Instant => ("instant".into(), None),
         Cost::InstantUpTo(x, _) => ("instant ≤ ".into(), Some(x)),
         Cost::InstantDownTo(x, _) | Cost::RereadBelow(x, _) => ("instant ≥ ".into(), Some(x)),
+        Cost::InstantAboveZero(_) => ("instant > 0".into(), None),
         Cost::Refold => ("refold".into(), None),
         Cost::Reread(pixels) => (format!("rereads {}", percent(pixels)), None),
         Cost::Regrow(pixels) => (format!("traces {}", percent(pixels)), None),
@@ -73,7 +74,7 @@ fn fault(session: &mut Session, path: &str, text: &str) -> Option<String> {
         let altered = path::altered(&scene, path).expect("a parameter");
         let class = session.class_of(&altered);
         let told = match word.as_str() {
-            "instant" => class <= Class::Reshade,
+            "instant" | "instant > 0" => class <= Class::Reshade,
             "traces all" => class == Class::Retrace,
             traces if traces.starts_with("traces") => class == Class::Regrow,
             _ => class == Class::Refold,

@@ -70,7 +70,7 @@ fn with_shift_a_light_goes_farther_and_nearer() {
     let eye = window.app().document().scene().camera.eye;
     let distance = |window: &Window| match window.light_place(0) {
         LightPlace::Point(point) => point.distance(eye),
-        LightPlace::Direction(_) => panic!("a point stays a point"),
+        _ => panic!("a point stays a point"),
     };
     let start = distance(&window);
     window.drag_handle("key", vec2(0.0, -40.0), Modifiers::SHIFT);

@@ -1,0 +1,175 @@
+//! What the lights show of themselves at a point: their shadow rays and records.
+
+use fearless_simd::Simd;
+use glam::DVec3;
+
+use super::grow::{Grower, MOST_CROSSED, Stop, Worker};
+use super::kept::{Met, Recalled};
+use super::lamp::Beam;
+use super::lobe::{self, Lit, Lobe};
+use super::sequence::Sequence;
+use super::sink::Sink;
+use super::surface::Surface;
+use super::tree::{BEHIND, LightHit};
+use crate::geometry::Interaction;
+use crate::scene::model::Model;
+
+/// A node that is lit.
+pub(super) struct Site<'a> {
+    pub(super) at: &'a Interaction,
+    pub(super) surface: &'a Surface,
+    /// The hash of the path that leads to it.
+    pub(super) path: u32,
+}
+
+/// How a light's ray reaches a surface.
+#[derive(Clone, Copy, PartialEq)]
+enum Reach {
+    /// From the front.
+    Front,
+    /// From behind, where this is what shines through.
+    Behind(Lobe),
+}
+
+impl Grower<'_> {
+    /// Sends the shadow rays from a node to a light, of which `recalled` knows what they met before.
+    ///
+    /// Every ray to the light's front has a record. Of a light with several rays so have those in
+    /// between that have nothing to show, so that the record j is of ray j; none of them has if none
+    /// has anything to show.
+    #[inline(always)]
+    pub(super) fn light<S: Simd, K: Sink>(
+        &self,
+        simd: S,
+        worker: &mut Worker,
+        site: &Site<'_>,
+        light: u16,
+        recalled: &mut Option<Recalled<'_>>,
+        sink: &mut K,
+    ) -> Result<(), Stop> {
+        let lamp = &self.lamps[light as usize];
+        let key = self.keys[light as usize];
+        let aim = lamp.aim(site.at.point);
+        let points = lamp.is_spread().then(|| Sequence::of_lights(worker.sample, site.path));
+        let first = worker.sample.index * lamp.rays;
+        let idle = LightHit { crossed: BEHIND, ..LightHit::stopped(light) };
+        let (mut begun, mut known) = (false, true);
+        for ray in 0..lamp.rays {
+            // Either all of its rays are known or none.
+            let met = recalled.as_mut().filter(|_| known).and_then(|r| r.light(key));
+            known = met.is_some();
+            let beam = aim.beam(points.map_or([0.0; 2], |points| points.point(first + ray)));
+            let Some(reach) = self.reach(site, &beam) else {
+                if begun {
+                    sink.light(idle, &[]);
+                }
+                continue;
+            };
+            if !begun {
+                (0..ray).for_each(|_| sink.light(idle, &[]));
+                begun = true;
+            }
+            self.ray(simd, worker, site, (light, &beam, reach), met, sink)?;
+        }
+        Ok(())
+    }
+
+    /// Whether a light's ray is in front of the geometric surface, or shines through it.
+    #[inline(always)]
+    fn reach(&self, site: &Site<'_>, beam: &Beam) -> Option<Reach> {
+        if beam.weight == 0.0 {
+            return None;
+        }
+        if site.surface.geometric.dot(beam.to_light) > 0.0 {
+            return Some(Reach::Front);
+        }
+        let behind = self.behind(site.at.material, site.surface, beam.to_light);
+        (behind != Lobe::NONE).then_some(Reach::Behind(behind))
+    }
+
+    /// What a light that shines onto the surface from behind shows of itself: none without Hall.
+    #[inline(always)]
+    fn behind(&self, material: u16, surface: &Surface, to_light: DVec3) -> Lobe {
+        match (self.models[material as usize], surface.refracted) {
+            (Model::Hall, Some(through)) if surface.geometric.dot(to_light) < 0.0 => {
+                lobe::transmitted(through, to_light, surface.reflectance())
+            }
+            _ => Lobe::NONE,
+        }
+    }
+
+    /// Sends a shadow ray, unless `met` still stands. Where nothing passes, the surface's own solid
+    /// is what stops a light behind it.
+    #[inline(always)]
+    fn ray<S: Simd, K: Sink>(
+        &self,
+        simd: S,
+        worker: &mut Worker,
+        Site { at, surface, path: _ }: &Site<'_>,
+        (light, beam, reach): (u16, &Beam, Reach),
+        met: Option<Met<'_>>,
+        sink: &mut K,
+    ) -> Result<(), Stop> {
+        let stopped = LightHit::stopped(light);
+        if reach != Reach::Front && self.opaque[at.solid as usize] {
+            sink.light(stopped, &[at.solid]);
+            return Ok(());
+        }
+        let blocker = match met {
+            Some(Met::Blocker(solid)) if self.opaque[solid as usize] => Some(solid),
+            Some(Met::Crossed(solids)) => {
+                worker.crossed.clear();
+                worker.crossed.extend_from_slice(solids);
+                None
+            }
+            _ => self.cast_shadow(simd, worker, at, beam),
+        };
+        if let Some(solid) = blocker {
+            sink.light(stopped, &[solid]);
+            return Ok(());
+        }
+        let crossed = &mut worker.crossed;
+        if crossed.len() > MOST_CROSSED {
+            return Err(Stop::Surfaces);
+        }
+        crossed.sort_unstable();
+        let to_light = beam.to_light;
+        let (n_dot_l, Lobe { angle, weight }) = match reach {
+            Reach::Front => {
+                let lit = Lit { normal: surface.normal, to_eye: surface.to_eye, to_light };
+                let model = self.models[at.material as usize];
+                let lobe = lobe::highlight(model, &lit, surface.contrast);
+                (surface.normal.dot(to_light) as f32, lobe)
+            }
+            Reach::Behind(lobe) => (0.0, lobe),
+        };
+        let (n_dot_l, weight) = (n_dot_l * beam.weight, weight * beam.weight);
+        let crossings = crossed.len() as u16;
+        sink.light(LightHit { light, crossed: crossings, n_dot_l, angle, weight }, crossed);
+        Ok(())
+    }
+
+    /// The opaque solid between a point and a light, or, if there is none, all solids crossed, in
+    /// `worker.crossed`.
+    #[inline(always)]
+    fn cast_shadow<S: Simd>(
+        &self,
+        simd: S,
+        worker: &mut Worker,
+        at: &Interaction,
+        beam: &Beam,
+    ) -> Option<u32> {
+        worker.rays.shadow += 1;
+        let (ray, leaving) = self.geometry.spawn(at, beam.to_light);
+        let Worker { stack, crossed, .. } = worker;
+        self.geometry.occluded(
+            simd,
+            stack,
+            &ray,
+            beam.distance,
+            Some(leaving),
+            &self.opaque,
+            crossed,
+        )
+    }
+}
