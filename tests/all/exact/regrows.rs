@@ -88,33 +88,7 @@ fn edited(scene: &Scene, random: &mut Random) -> (Scene, String) {
         12 => {
             set_to(&mut edited, &format!("materials.{name}.shininess"), random.pick(&["3", "40"]))
         }
-        17 if lights > 0 => {
-            let name = scene.lights[random.below(lights)].name.clone();
-            set_to(&mut edited, &format!("lights.{name}.falloff"), random.pick(&["0", "2.5", "6"]))
-        }
-        18 if lights > 0 => {
-            let name = scene.lights[random.below(lights)].name.clone();
-            set_to(&mut edited, &format!("lights.{name}.samples"), random.pick(&["1", "2", "5"]))
-        }
-        19 => {
-            let value = random.pick(&["0", "6", "90"]);
-            set_to(&mut edited, &format!("materials.{name}.gloss"), value)
-        }
-        20 => {
-            let value = random.pick(&["0", "6", "90"]);
-            set_to(&mut edited, &format!("materials.{name}.translucency"), value)
-        }
-        21 if lights > 0 => {
-            let light = &mut edited.lights[random.below(lights)];
-            light.place = match &light.place {
-                LightPlace::Spot { at, towards, angle_degrees: _, edge } => {
-                    let angle_degrees = 5.0 + 40.0 * random.unit();
-                    LightPlace::Spot { at: *at, towards: *towards, angle_degrees, edge: *edge }
-                }
-                place => place.turned_into(random.pick(&LightPlace::KINDS)),
-            };
-            format!("{} is a {:?}", light.name, light.place)
-        }
+        17..=21 => lit_or_blurred(&mut edited, &name, random),
         _ => {
             let used = |m: usize| scene.solids.iter().any(|solid| solid.material == m);
             if used(material) {
@@ -130,6 +104,32 @@ fn edited(scene: &Scene, random: &mut Random) -> (Scene, String) {
         }
     };
     (edited, words)
+}
+
+/// Another falloff, number of rays or kind of a light, or another lobe of the material of this name.
+fn lit_or_blurred(scene: &mut Scene, name: &str, random: &mut Random) -> String {
+    let lights = scene.lights.len();
+    if lights == 0 || random.below(5) < 2 {
+        let key = random.pick(&["gloss", "translucency"]);
+        let value = random.pick(&["0", "6", "90"]);
+        return set_to(scene, &format!("materials.{name}.{key}"), value);
+    }
+    let light = &mut scene.lights[random.below(lights)];
+    let name = light.name.clone();
+    match random.below(3) {
+        0 => set_to(scene, &format!("lights.{name}.falloff"), random.pick(&["0", "2.5", "6"])),
+        1 => set_to(scene, &format!("lights.{name}.samples"), random.pick(&["1", "2", "5"])),
+        _ => {
+            light.place = match &light.place {
+                LightPlace::Spot { at, towards, angle_degrees: _, edge } => {
+                    let angle_degrees = 5.0 + 40.0 * random.unit();
+                    LightPlace::Spot { at: *at, towards: *towards, angle_degrees, edge: *edge }
+                }
+                place => place.turned_into(random.pick(&LightPlace::KINDS)),
+            };
+            format!("{name} is a {:?}", light.place)
+        }
+    }
 }
 
 fn set_to(scene: &mut Scene, path: &str, value: &str) -> String {
