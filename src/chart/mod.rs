@@ -55,6 +55,12 @@ pub const SETTINGS: &[Setting] = &[
         ladder: |_| vec![0.3, 0.1, 0.03, 0.01, 1.0 / 255.0, 0.001, 3e-4, 1e-4],
         exact: &[],
     },
+    Setting {
+        path: "trace.adaptive",
+        name: "adaptive step",
+        ladder: |_| vec![1.0, 0.4, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.0],
+        exact: &[],
+    },
 ];
 
 fn sample_ladder(reference: u32) -> Vec<f64> {

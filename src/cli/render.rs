@@ -9,7 +9,7 @@ use super::cached::{self, OpenedScene};
 use super::tiles::{self, check_part_name};
 use super::watch::watched;
 use super::{Common, Failure, print, read_scene, say, set, write_text};
-use crate::film::write::{Format, check_writable, picture};
+use crate::film::write::{self as files, Format, check_writable, picture};
 use crate::forest::grow::RayCounts;
 use crate::scene::{Scene, write};
 use crate::session::cache::OpenedCache;
@@ -48,6 +48,10 @@ pub(crate) struct Render {
     /// parts together.
     #[arg(long, value_name = "I/N", conflicts_with_all = ["edit", "cache", "bits"])]
     tile: Option<Share>,
+    /// Write a picture of where adaptive sampling (trace.adaptive) spent its rays, as PNG: white pixels
+    /// have all samples.
+    #[arg(long, value_name = "FILE", conflicts_with = "tile")]
+    sample_map: Option<PathBuf>,
     #[command(flatten)]
     common: Common,
 }
@@ -77,6 +81,7 @@ impl Render {
         let text = write::text(session.scene());
         let exposure = session.scene().picture.exposure;
         picture(&self.output, format, &session.film(), exposure, &text).map_err(Failure::job)?;
+        self.write_sample_map(&session)?;
         self.write_stats(&stats)?;
         if !self.stats_are_results() {
             let shown = self.output.display();
@@ -117,6 +122,15 @@ impl Render {
             print(&line);
         }
         Ok(())
+    }
+
+    fn write_sample_map(&self, session: &Session) -> Result<(), Failure> {
+        let Some(path) = &self.sample_map else { return Ok(()) };
+        let map = session.sample_map().ok_or_else(|| {
+            Failure::input("--sample-map: every pixel has all samples; set trace.adaptive above 0")
+        })?;
+        let frame = map.picture(session.transport().layout);
+        files::frame(path, &frame).map_err(Failure::job)
     }
 
     fn write_stats(&self, stats: &Value) -> Result<(), Failure> {

@@ -68,6 +68,11 @@ pub fn picture(
     })
 }
 
+/// Writes a picture of bytes as PNG.
+pub fn frame(path: &Path, frame: &Frame) -> Result<(), WriteError> {
+    atomically(path, |out| png8(out, frame, ""))
+}
+
 /// Writes a file beside its place and renames it: a reader sees the old file or the new one, and a
 /// process killed while writing leaves the old one.
 pub fn atomically(

@@ -3,6 +3,7 @@
 use super::grow::Grower;
 use super::signature::{PILOTS, Signature, Solids};
 use super::tree::TileTrees;
+use crate::film::Frame;
 use crate::film::layout::{LANES, Layout, Place, TILE_BLOCKS};
 
 /// Places of a tile for pixels.
@@ -49,6 +50,18 @@ impl SampleMap {
         }
         let tile = |tile: &[u16]| <[u16; TILE_PLACES]>::try_from(tile).ok().map(Box::new);
         Some(SampleMap { samples, tiles: list.chunks(TILE_PLACES).map(tile).collect() })
+    }
+
+    /// A picture of it: white where a pixel has all samples, darker with fewer.
+    pub fn picture(&self, layout: Layout) -> Frame {
+        let mut frame = Frame::new(layout.size);
+        let [width, height] = layout.size;
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+        for (pixel, bytes) in pixels.zip(frame.bytes.chunks_exact_mut(4)) {
+            let level = (255 * self.of(layout.place(pixel)) / self.samples) as u8;
+            bytes.copy_from_slice(&[level, level, level, 255]);
+        }
+        frame
     }
 
     /// The numbers of a tile's pixels, by block and lane.

@@ -222,16 +222,6 @@ impl Session {
         plan.map_or(Work::Shade, Work::Regrow)
     }
 
-    /// Whether branches begin or cease to live, or lights are gone: then other pixels may need all
-    /// samples.
-    fn redecides(&mut self, scene: &Scene, change: &Change) -> bool {
-        let values = |scene: &Scene| FactorValues::new(scene).with_lights_at(&self.names.lights);
-        let before = self.terms.lives(&self.program, &values(&self.scene));
-        change.lights.len() != self.names.lights.len()
-            || change.terms
-                && before != self.terms.lives(&self.program, &self.factors_ahead(scene, change))
-    }
-
     /// Grows what a plan names, and folds it.
     fn carry_out(
         &mut self,
@@ -510,19 +500,6 @@ impl Session {
     /// The scene made ready for rays.
     pub fn geometry(&self) -> &Geometry {
         &self.geometry
-    }
-
-    /// Whether some pixels have fewer samples than others.
-    pub fn is_adaptive(&self) -> bool {
-        self.map.is_some()
-    }
-
-    /// The number of samples of a pixel.
-    pub fn samples_of(&self, pixel: [u32; 2]) -> u32 {
-        match &self.map {
-            Some(map) => map.of(self.transport.layout.place(pixel)),
-            None => self.transport.samples,
-        }
     }
 
     /// The kept trees.

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex};
 
 use rayon::ThreadPool;
 
+use super::Session;
 use super::trace::{LEAST_BLOCK_LIMIT, TraceError, claim};
 use crate::film::layout::{LANES, Layout, TILE_BLOCKS};
 use crate::forest::counts::{SampleMap, Signatures};
@@ -17,6 +18,8 @@ use crate::forest::tree::TileTrees;
 use crate::geometry::Geometry;
 use crate::progress::Progress;
 use crate::scene::Scene;
+use crate::scene::change::Change;
+use crate::scene::factor::FactorValues;
 
 /// What the first samples of some tiles' pixels gave; nothing where sampling is not adaptive.
 #[derive(Default)]
@@ -83,6 +86,36 @@ impl Pilots {
     /// The trees of a tile's pilots, if they are there.
     pub(super) fn tree(&self, tile: usize) -> Option<Arc<KeptTrees>> {
         self.trees.get(tile).cloned().flatten()
+    }
+}
+
+impl Session {
+    /// Whether some pixels have fewer samples than others.
+    pub fn is_adaptive(&self) -> bool {
+        self.map.is_some()
+    }
+
+    /// The pixels' numbers of samples, where sampling is adaptive.
+    pub fn sample_map(&self) -> Option<Arc<SampleMap>> {
+        self.map.clone()
+    }
+
+    /// The number of samples of a pixel.
+    pub fn samples_of(&self, pixel: [u32; 2]) -> u32 {
+        match &self.map {
+            Some(map) => map.of(self.transport.layout.place(pixel)),
+            None => self.transport.samples,
+        }
+    }
+
+    /// Whether branches begin or cease to live, or lights are gone: then other pixels may need all
+    /// samples.
+    pub(super) fn redecides(&mut self, scene: &Scene, change: &Change) -> bool {
+        let values = |scene: &Scene| FactorValues::new(scene).with_lights_at(&self.names.lights);
+        let before = self.terms.lives(&self.program, &values(&self.scene));
+        change.lights.len() != self.names.lights.len()
+            || change.terms
+                && before != self.terms.lives(&self.program, &self.factors_ahead(scene, change))
     }
 }
 

@@ -24,6 +24,7 @@ use super::style;
 use crate::document::recovery::Recovery;
 use crate::document::settings::Settings;
 use crate::document::{Document, flaw};
+use crate::film::layout::Layout;
 use crate::scene::{Camera, Scene, path};
 use crate::session::live::{Event, Live, Shown};
 
@@ -48,6 +49,10 @@ pub struct App {
     pub(super) renaming: Option<Renaming>,
     handles: Handles,
     pub(super) mixer: Mixer,
+    /// Whether the picture shows its sample map instead of itself.
+    sample_map: bool,
+    /// Whether the screen shows something else than it should.
+    is_frame_stale: bool,
     pub(super) chart: ChartPanel,
     /// The selection whose costs are watched, and how many solids and materials the scene had.
     watched: Option<Vec<String>>,
@@ -99,6 +104,8 @@ impl App {
             renaming: None,
             handles: Handles::default(),
             mixer: Mixer::default(),
+            sample_map: false,
+            is_frame_stale: false,
             chart: ChartPanel::new(setup.options),
             watched: None,
             wheel_until: None,
@@ -156,8 +163,11 @@ impl App {
     /// Takes pictures and events from the session.
     fn receive(&mut self, ui: &Ui) {
         if let Some(shown) = self.live.take_shown() {
-            self.picture.set_frame(ui, &shown.frame, shown.scene.picture.size);
             self.shown = Some(shown);
+            self.is_frame_stale = true;
+        }
+        if std::mem::take(&mut self.is_frame_stale) {
+            self.set_frame(ui);
         }
         for event in self.live.take_events() {
             match event {
@@ -166,6 +176,25 @@ impl App {
                 Event::Failed(message) => self.notices.error(message),
             }
         }
+    }
+
+    /// Puts the picture shown, or its sample map, on the screen.
+    fn set_frame(&mut self, ui: &Ui) {
+        let Some(shown) = &self.shown else { return };
+        let size = shown.scene.picture.size;
+        match shown.map.as_ref().filter(|_| self.sample_map) {
+            Some(map) => self.picture.set_frame(ui, &map.picture(Layout::new(size)), size),
+            None => self.picture.set_frame(ui, &shown.frame, size),
+        }
+    }
+
+    fn toggle_sample_map(&mut self) {
+        self.sample_map = !self.sample_map;
+        let none = self.shown.as_ref().is_some_and(|shown| shown.map.is_none());
+        if self.sample_map && none {
+            self.notices.say("every pixel has all samples: trace.adaptive is 0".into());
+        }
+        self.is_frame_stale = true;
     }
 
     /// The commands whose keys were pressed.
@@ -201,6 +230,7 @@ impl App {
                 focus_tool: self.picture.focus_tool,
                 handles: !self.handles.hidden,
                 mixer: self.mixer.open,
+                sample_map: self.sample_map,
                 chart: self.chart.open,
                 subject: self.subject(),
                 keep: self.keep_offer(),
@@ -394,6 +424,7 @@ impl App {
             Command::FocusTool => self.picture.focus_tool = !self.picture.focus_tool,
             Command::Handles => self.handles.hidden = !self.handles.hidden,
             Command::Mixer => self.mixer.open = !self.mixer.open,
+            Command::SampleMap => self.toggle_sample_map(),
             Command::Chart => self.chart.open = !self.chart.open,
             Command::AddLight
             | Command::AddMaterial

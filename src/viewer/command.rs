@@ -55,6 +55,8 @@ pub(super) enum Command {
     Mixer,
     /// Whether the chart of speed against accuracy shows.
     Chart,
+    /// Whether the picture shows how many samples its pixels have.
+    SampleMap,
     /// Stops the running trace, export or keeping.
     Stop,
     /// Traces what a stop left out.
@@ -92,6 +94,7 @@ impl Command {
             Command::Handles => "Light handles",
             Command::Mixer => "Light mixer",
             Command::Chart => "Speed and accuracy",
+            Command::SampleMap => "Sample map",
             Command::Stop => "Stop",
             Command::Resume => "Trace now",
         }
@@ -134,6 +137,9 @@ impl Command {
             Command::Chart => {
                 "Measures samples, depth and cut-off of this scene, and recommends settings"
             }
+            Command::SampleMap => {
+                "Where adaptive sampling (trace.adaptive) spends its rays: white pixels have all samples"
+            }
             Command::Stop => "Stops what runs; the last whole picture stays",
             Command::Resume => "Traces the picture that was stopped",
         }
@@ -169,6 +175,7 @@ impl Command {
             | Command::AddMaterial
             | Command::Assign
             | Command::Chart
+            | Command::SampleMap
             | Command::Resume => None,
         }
     }

@@ -22,6 +22,8 @@ pub(super) struct MenuState<'a> {
     pub(super) handles: bool,
     /// Whether the light mixer shows.
     pub(super) mixer: bool,
+    /// Whether the sample map shows in the picture's place.
+    pub(super) sample_map: bool,
     /// Whether the chart of speed against accuracy shows.
     pub(super) chart: bool,
     /// What commands about lights and materials are about.
@@ -195,6 +197,7 @@ fn view_menu(
         (Command::Handles, state.handles),
         (Command::Mixer, state.mixer),
         (Command::Chart, state.chart),
+        (Command::SampleMap, state.sample_map),
     ] {
         let button = with_keys(ui, command, command.name()).selected(on);
         if ui.add(button).on_hover_text(command.about()).clicked() {

@@ -21,6 +21,7 @@ use super::cost::Cost;
 use super::{EditReport, Options};
 use crate::film::Frame;
 use crate::film::write::Format;
+use crate::forest::counts::SampleMap;
 use crate::scene::Scene;
 use board::Board;
 use shader::{Message, Shader};
@@ -49,6 +50,8 @@ pub struct Shown {
     pub scene: Arc<Scene>,
     /// How fine it is.
     pub stage: Stage,
+    /// The pixels' numbers of samples, of a whole picture whose sampling is adaptive.
+    pub map: Option<Arc<SampleMap>>,
 }
 
 /// What the threads are doing, for the status line.

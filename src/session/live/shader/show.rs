@@ -16,7 +16,7 @@ impl Shader {
         if let Some((frame, scene, geometry)) = self.mending().map(|mending| {
             (mending.frame(), mending.scene.clone(), mending.regrow.geometry.clone())
         }) {
-            self.board.show(Shown { frame, scene, stage: Stage::Mending }, geometry);
+            self.board.show(Shown { frame, scene, stage: Stage::Mending, map: None }, geometry);
             self.badges.renew(Stage::Mending, &self.board);
             self.report();
             return self.board.wake();
@@ -26,7 +26,12 @@ impl Shader {
             (None, Some(whole)) => (whole, whole.shared_scene(), Stage::Whole),
             (None, None) => return,
         };
-        let shown = Shown { frame: session.shared_frame(), scene, stage };
+        let shown = Shown {
+            frame: session.shared_frame(),
+            scene,
+            stage,
+            map: session.sample_map().filter(|_| stage == Stage::Whole),
+        };
         self.board.show(shown, session.shared_geometry());
         self.badges.renew(stage, &self.board);
         self.report();
