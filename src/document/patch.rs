@@ -206,6 +206,12 @@ impl Patch {
                 after: keys(&wanted[index + 1..]),
             };
             match (old, &node.content) {
+                // A table within a thing that is not spelled stands in one line.
+                (Some(_), Content::Table(_))
+                    if path.len() == 2 && !self.splice.spells(&place().of(&node.key)) =>
+                {
+                    self.insert(&place(), node)?;
+                }
                 (Some(old), Content::Table(new)) => {
                     path.push(node.key.clone());
                     self.structure(path, children(old), new)?;

@@ -197,9 +197,7 @@ impl Folder {
     /// samples.
     fn end_block(&mut self) {
         self.stamp += 1;
-        let first = self.masks.len();
-        let planes = self.planes[first..].iter();
-        self.masks.extend(planes.map(|plane| sign::lanes(plane, self.signed)));
+        sign::note_lanes(&self.planes, self.signed, &mut self.masks);
         let from = self.highlight_starts[self.highlight_starts.len() - 1] as usize;
         for sample in &self.highlights[from..] {
             self.masks[sample.slot as usize] |= 1 << sample.lane;

@@ -16,9 +16,18 @@ pub(super) fn empty(signed: bool) -> Plane {
     if signed { Plane([-0.0; LANES]) } else { Plane::default() }
 }
 
+/// Adds to `masks` the lanes of all planes that it has none of.
+pub(super) fn note_lanes(planes: &[Plane], signed: bool, masks: &mut Vec<u16>) {
+    let new = &planes[masks.len()..];
+    match signed {
+        true => masks.extend(new.iter().map(|plane| lanes(plane, true))),
+        false => masks.extend(new.iter().map(|plane| lanes(plane, false))),
+    }
+}
+
 /// The lanes of sums in which there is anything: without signs, a sum of positive numbers.
 #[inline(always)]
-pub(super) fn lanes(plane: &Plane, signed: bool) -> u16 {
+fn lanes(plane: &Plane, signed: bool) -> u16 {
     let lanes = plane.0.iter().enumerate();
     match signed {
         false => lanes.fold(0, |mask, (i, &c)| mask | u16::from(c != 0.0) << i),
