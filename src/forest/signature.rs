@@ -1,5 +1,6 @@
 //! What the first samples of a pixel saw, from which follows whether it needs all of them.
 
+use crate::color::Rgb;
 pub use crate::scene::PILOTS;
 
 use super::tree::{BEHIND, BLOCKED, Branch, LightHit, Node, Reader};
@@ -41,6 +42,15 @@ impl Signature {
             all = Some(all.map_or(one, |all| all.and(one)));
         }
         all.unwrap_or_default()
+    }
+
+    /// The colours of a pixel's samples, in linear light.
+    pub fn of_colors(colors: &[Rgb]) -> Signature {
+        let one = |color: &Rgb| {
+            let values = color.0.map(|c| in_units(c.clamp(0.0, 15.0)));
+            Signature { seen: 0, low: values, high: values }
+        };
+        colors.iter().map(one).reduce(Signature::and).unwrap_or_default()
     }
 
     fn and(self, other: Signature) -> Signature {

@@ -200,9 +200,10 @@ impl Change {
     /// Depth and cut-off are limits of the rule of liveness: lowering what is seen costs nothing,
     /// raising it meets the frontier.
     fn trace(&mut self, old: &Trace, new: &Trace) {
-        let Trace { samples, depth, cutoff, filter, adaptive } = old;
+        let Trace { samples, depth, cutoff, filter, adaptive, refine } = old;
         let is_off = !old.is_adaptive() && !new.is_adaptive();
         self.ray(*adaptive != new.adaptive && !is_off, "trace.adaptive");
+        self.ray(*refine != new.refine && !is_off, "trace.refine");
         self.ray(*samples != new.samples, "trace.samples");
         self.ray(*filter != new.filter, "trace.filter");
         self.term(*depth != new.depth || *cutoff != new.cutoff);

@@ -9,6 +9,7 @@ use super::filter::Filter;
 use super::mesh::Mesh;
 use super::model::Model;
 use super::motion::Motion;
+use super::refine::Refine;
 use super::{Background, Camera, Lens, Material, Paint, Picture, Scene, Shape, Solid, Trace};
 use crate::color::Rgb;
 
@@ -55,7 +56,14 @@ impl Default for Background {
 
 impl Default for Trace {
     fn default() -> Trace {
-        Trace { samples: 16, depth: 10, cutoff: 1.0 / 255.0, filter: Filter::Box, adaptive: 0.0 }
+        Trace {
+            samples: 16,
+            depth: 10,
+            cutoff: 1.0 / 255.0,
+            filter: Filter::Box,
+            adaptive: 0.0,
+            refine: Refine::Trees,
+        }
     }
 }
 

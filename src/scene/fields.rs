@@ -129,11 +129,12 @@ pub fn picture(picture: &mut Picture, v: &mut dyn Visit) {
 
 /// Visits `[trace]`.
 pub fn trace(trace: &mut Trace, v: &mut dyn Visit) {
-    let Trace { samples, depth, cutoff, filter, adaptive } = trace;
+    let Trace { samples, depth, cutoff, filter, adaptive, refine } = trace;
     v.leaf("samples", Need::Optional, Slot::Whole(samples, Range::closed(1.0, 4096.0)));
     v.leaf("depth", Need::Optional, Slot::Whole(depth, DEPTH));
     v.leaf("cutoff", Need::Optional, Slot::Single(cutoff, SHARE));
     v.leaf("adaptive", Need::Optional, Slot::Single(adaptive, SHARE));
+    v.leaf("refine", Need::Optional, Slot::Choice(refine));
     v.leaf("filter", Need::Optional, Slot::Choice(filter));
 }
 

@@ -23,6 +23,7 @@ pub mod problem;
 pub mod range;
 pub mod read;
 mod reader;
+pub mod refine;
 pub mod slot;
 pub(crate) mod toml_text;
 pub mod value;
@@ -38,6 +39,7 @@ pub use light::{Area, Light, LightPlace};
 use mesh::Mesh;
 use model::Model;
 use motion::Motion;
+use refine::Refine;
 
 /// A whole scene. Lengths are in one unit of the user's choice, colours linear Rec. 709.
 ///
@@ -138,6 +140,8 @@ pub struct Trace {
     /// Adaptive sampling: how much cosines of neighbouring samples may differ where a pixel gets only
     /// its first few, 0 … 1; 0 gives every pixel all samples.
     pub adaptive: f32,
+    /// What is compared where sampling is adaptive.
+    pub refine: Refine,
 }
 
 impl Trace {

@@ -27,6 +27,10 @@ pub(super) fn about(key: &str) -> &'static str {
             "Rays, of a picture from the eye through every pixel, of a light with an area from every \
              point to it: more give smoother edges"
         }
+        "refine" => {
+            "What of neighbouring samples is compared: trees: what rays met, and cosines; contrast: \
+             colours, decided again after every edit"
+        }
         "adaptive" => {
             "0: every pixel gets all samples; above: only pixels whose first samples differ more than this"
         }
@@ -117,6 +121,8 @@ pub(super) fn choice(name: &str) -> &'static str {
         "tent" => "Nearer light counts more, up to the next pixel's centre: smooth",
         "mitchell" => "Sharp and smooth; beside strong edges it may overshoot a little",
         "gaussian" => "Very smooth, a little soft",
+        "trees" => "What rays met and how they met it: colours do not matter",
+        "contrast" => "The colours that samples show",
         "point" => "A light at a point, in all directions",
         "direction" => "A light infinitely far away",
         "spot" => "A light at a point, into a cone",
@@ -166,6 +172,7 @@ mod tests {
     use crate::scene::filter::Filter;
     use crate::scene::model::Model;
     use crate::scene::path::parameters;
+    use crate::scene::refine::Refine;
     use crate::scene::{Lens, Light, LightPlace, Material, Paint, Scene, Shape, Solid};
 
     #[test]
@@ -192,7 +199,7 @@ mod tests {
 
     #[test]
     fn every_choice_is_explained() {
-        for name in Model::NAMES.iter().chain(Filter::NAMES) {
+        for name in Model::NAMES.iter().chain(Filter::NAMES).chain(Refine::NAMES) {
             assert!(!choice(name).is_empty(), "{name}");
         }
         assert_eq!(choice("no such name"), "");

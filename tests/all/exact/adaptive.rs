@@ -68,6 +68,28 @@ fn every_edit_gives_what_a_fresh_trace_gives() {
 }
 
 #[test]
+fn by_contrast_every_edit_decides_again() {
+    let mut scene = adaptive("whitted", [96, 64]);
+    set(&mut scene, "trace.refine", "contrast");
+    let mut session = open(&scene, 2);
+    let before = refined_share(&session, 16);
+    for (path, value, class) in [
+        ("materials.tiles.texture.checker.a", "[0.9, 0.9, 0.1]", Class::Retrace),
+        ("materials.tiles.shininess", "40", Class::Retrace),
+        ("picture.exposure", "1", Class::Reshade),
+        ("materials.tiles.kloc", "0", Class::Retrace),
+    ] {
+        let mut scene = session.scene().clone();
+        set(&mut scene, path, value);
+        let report = session.edit(scene.clone(), &Progress::default()).unwrap();
+        assert_eq!(report.class, class, "{path} = {value}");
+        assert_same_picture(&session, &open(&scene, 1), &format!("{path} = {value}"));
+    }
+    let after = refined_share(&session, 16);
+    assert!(after < before, "a black floor has no contrast: {before} {after}");
+}
+
+#[test]
 fn a_kept_cache_opens_without_a_ray() {
     let scene = adaptive("whitted", [70, 50]);
     let session = open(&scene, 2);

@@ -245,6 +245,7 @@ pub(super) const ROWS: &[Row] = &[
     row("trace.samples", &[("1", Retrace), ("3", Retrace), ("@", Retrace)]),
     // With so few samples every pixel has all.
     row("trace.adaptive", &[("0.1", Nothing), ("1", Nothing), ("@", Nothing)]),
+    row("trace.refine", &[("contrast", Nothing), ("trees", Nothing), ("@", Nothing)]),
     row(
         "trace.filter",
         &[
@@ -489,6 +490,7 @@ pub(super) const LENS: &[Row] = &[
     row("trace.filter", &[("gaussian", Retrace), ("box", Retrace), ("@", Retrace)]),
     row("trace.samples", &[("1", Retrace), ("4", Retrace), ("@", Retrace)]),
     row("trace.adaptive", &[("0.1", Retrace), ("0.02", Retrace), ("@", Retrace)]),
+    row("trace.refine", &[("contrast", Nothing), ("trees", Nothing), ("@", Nothing)]),
     row("solids.ball.motion.translate", VECTOR),
     row("solids.ring.motion.rotate_degrees", TURN),
     row("solids.ball.motion.rotate_degrees", TURN),
