@@ -35,6 +35,10 @@
 //!   their blocks are grown and folded again, and put into the matrix when all are done. Where an edit
 //!   wakes branches or moves lights, it names a [`Scope`](forest::scope::Scope), the terms that get
 //!   other coefficients: nothing else of the trees is read, and all other rows stay.
+//! * **Samples** depend on the pixel, their index, the effect and the branch alone. Where sampling is
+//!   adaptive, a [`SampleMap`](forest::counts::SampleMap) follows from what every pixel's first samples
+//!   saw: a function of the scene. A sample of a pixel that has few weighs more; that is all that folding
+//!   knows of it. An edit after which the map could differ traces again.
 //! * **Keys.** A light that is moved gets a new key, so that records of where it was answer for
 //!   nothing; one that is removed leaves a gap in the list of factors, which is black. Materials are
 //!   not in the trees at all.

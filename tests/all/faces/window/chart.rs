@@ -99,13 +99,13 @@ fn a_point_tells_its_numbers_when_the_pointer_rests_on_it() {
     window.measure("32");
     let left = window.rect(Role::Button, "Measure").left();
     let right = window.rect(Role::Button, "apply trace.samples = 1").left();
-    let (top, bottom) = (window.rect(Role::Button, "apply trace.samples = 1").top(), 700.0);
+    let (top, bottom) = (window.rect(Role::Button, "Measure").bottom(), 719.0);
     let mut told = Vec::new();
     // Steps that no point's reach falls between.
-    let (columns, rows) = (((right - left) / 7.0) as usize, ((bottom - top) / 7.0) as usize);
+    let (columns, rows) = (((right - left) / 5.0) as usize, ((bottom - top) / 5.0) as usize);
     'search: for row in 0..rows {
         for column in 0..columns {
-            let at = Pos2::new(left + column as f32 * 7.0, top + row as f32 * 7.0);
+            let at = Pos2::new(left + column as f32 * 5.0, top + row as f32 * 5.0);
             window.harness.hover_at(at);
             window.harness.step();
             told = tips(&window);
