@@ -88,8 +88,6 @@ pub(super) fn about(key: &str) -> &'static str {
              weighs its surroundings"
         }
         "ior" => "Index of refraction: air 1, water 1.33, glass 1.5, diamond 2.42",
-        "a" => "First colour: of every other square, of stone, of early wood, of the start",
-        "b" => "Second colour: of the other squares, of veins, of late wood, of the end",
         "material" => "The material of the solid",
         "center" => {
             "Centre, of a solid in its own coordinates; of wood and waves, where rings begin, in the world"
@@ -113,7 +111,6 @@ pub(super) fn about(key: &str) -> &'static str {
         "scale" => {
             "Makes the solid larger or smaller, first of all; of a bump: its length in units of the scene"
         }
-        "file" => "The file; a mesh can be changed in the scene file",
         key => about_pattern(key),
     }
 }
@@ -121,6 +118,9 @@ pub(super) fn about(key: &str) -> &'static str {
 /// The same of what only patterns, bumps and backgrounds have.
 fn about_pattern(key: &str) -> &'static str {
     match key {
+        "a" => "First colour: of every other square, of stone, of early wood, of the start",
+        "b" => "Second colour: of the other squares, of veins, of late wood, of the end",
+        "file" => "The file; a mesh can be changed in the scene file",
         "from" => "Where the first colour is",
         "to" => "Where the second colour is",
         "axis" => "Along the trunk that the wood is of",

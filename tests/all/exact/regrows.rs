@@ -70,15 +70,7 @@ fn edited(scene: &Scene, random: &mut Random) -> (Scene, String) {
         7 | 8 => set_to(&mut edited, &format!("materials.{name}.reflect"), random.pick(&weights)),
         9 => set_to(&mut edited, "trace.depth", random.pick(&["0", "1", "2", "4", "5"])),
         10 => set_to(&mut edited, "trace.cutoff", random.pick(&["0.0039", "0.02", "0.3"])),
-        11 => {
-            let size = 0.4 + random.unit();
-            edited.materials[material].paint = match &scene.materials[material].paint {
-                Paint::Solid(color) => Paint::Checker { a: *color, b: *color * 0.5, size },
-                other => other.turned_into("color"),
-            };
-            format!("another texture of {name}")
-        }
-        22.. => repainted(&mut edited, material, choice, random),
+        11 | 22.. => repainted(&mut edited, material, choice, random),
         13 => {
             let models = ["phong", "blinn", "cook_torrance", "hall"];
             set_to(&mut edited, &format!("materials.{name}.model"), random.pick(&models))
@@ -143,6 +135,14 @@ fn repainted(scene: &mut Scene, material: usize, choice: usize, random: &mut Ran
     let Scene { materials, background, .. } = scene;
     let Material { name, paint, bump, .. } = &mut materials[material];
     match choice {
+        11 => {
+            let size = 0.4 + random.unit();
+            *paint = match &*paint {
+                Paint::Solid(color) => Paint::Checker { a: *color, b: *color * 0.5, size },
+                other => other.turned_into("color"),
+            };
+            format!("another texture of {name}")
+        }
         22 => {
             let kind = random.pick(&["color", "checker", "gradient", "marble", "wood"]);
             *paint = paint.turned_into(kind);
