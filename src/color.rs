@@ -87,6 +87,13 @@ pub fn srgb_byte(linear: f32) -> u8 {
     ((srgb_code(linear) + 8_388_608.0).to_bits() & 255) as u8
 }
 
+/// Linear light of an sRGB code in 0 … 1 (IEC 61966-2-1), the same bits on every CPU.
+pub fn linear_of_srgb(code: f64) -> f32 {
+    let linear =
+        if code <= 0.040_45 { code / 12.92 } else { libm::pow((code + 0.055) / 1.055, 2.4) };
+    linear as f32
+}
+
 /// Temperatures that [`blackbody`] knows, in kelvin.
 pub const KELVINS: RangeInclusive<f64> = 1000.0..=15_000.0;
 /// A colour that is farther than this from every glowing body, in CIE 1960 uv, has no temperature:
@@ -275,6 +282,7 @@ mod tests {
             let v = f64::from(byte) / 255.0;
             let linear = if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) };
             assert_eq!(srgb_byte(linear as f32), byte);
+            assert!((f64::from(linear_of_srgb(v)) - linear).abs() < 1e-7);
         }
         assert_eq!([srgb_byte(f32::NAN), srgb_byte(-1.0), srgb_byte(f32::INFINITY)], [0, 0, 255]);
     }

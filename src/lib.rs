@@ -49,6 +49,11 @@
 //!   merge bit for bit.
 //! * **Bits.** No fused multiply-add, no power, logarithm or sine of the platform in what reaches a
 //!   coefficient; no number that depends on a running counter.
+//! * **Textures** give no coefficient of their own but shares of slots, which add up to 1, or a texel,
+//!   which is one coefficient per channel: palette colours and tints are parameters like all others. They
+//!   are functions of the point, or of u and v, and of how wide a pixel is there; none is kept in the
+//!   trees. Bumps bend the shading normal alone: sides, and which lights are asked, follow the geometric
+//!   one. A solid whose bump is another than in the kept trees sends its rays anew.
 //! * **Geometry is f64** and holds no epsilon with a length in it. The f32 hierarchy only leaves out
 //!   what cannot be hit.
 //! * **The window waits for nobody.** A [`Live`](session::live::Live) session has a thread that owns

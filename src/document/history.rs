@@ -149,7 +149,8 @@ impl Visit for Bits {
             | Slot::Flag(_)
             | Slot::Choice(_)
             | Slot::Material(_)
-            | Slot::Mesh { .. } => {}
+            | Slot::Mesh { .. }
+            | Slot::Image(_) => {}
         }
     }
 

@@ -26,7 +26,7 @@ use crate::scene::Scene;
 use crate::scene::check::validate;
 use history::{History, same_bits};
 use patch::patch;
-use relocate::{relocate, resolved};
+use relocate::{relative, relocate, resolved};
 use save::file_name;
 
 /// A scene being edited, with its file and its history.
@@ -206,7 +206,14 @@ impl Document {
         self.refresh();
     }
 
-    /// The folder that mesh files are relative to.
+    /// How the scene names a mesh or image file: relative to its own file, if it has one.
+    pub fn name_of(&self, file: &Path) -> String {
+        let named = self.path.as_deref().and_then(|path| relative(file, folder_of(path)));
+        let whole = || resolved(file).to_string_lossy().into_owned();
+        named.unwrap_or_else(whole)
+    }
+
+    /// The folder that mesh and image files are relative to.
     fn folder(&self) -> PathBuf {
         self.path.as_deref().map_or_else(|| PathBuf::from("."), |path| folder_of(path).to_owned())
     }

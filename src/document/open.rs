@@ -9,7 +9,7 @@ use super::history::History;
 use super::relocate::relative;
 use super::save::file_name;
 use super::{Base, Document, DocumentError};
-use crate::scene::read::{self, Meshes};
+use crate::scene::read;
 use crate::scene::{Scene, Shape, mesh};
 
 impl Document {
@@ -89,11 +89,11 @@ pub(super) fn replacements(text: &str, folder: &Path, given: &[(String, PathBuf)
 }
 
 /// Reads the mesh files that were found.
-pub(super) fn known(found: &Found) -> Result<Meshes, DocumentError> {
-    let mut known = Meshes::new();
+pub(super) fn known(found: &Found) -> Result<read::Known, DocumentError> {
+    let mut known = read::Known::default();
     for (file, place) in found {
         let mesh = mesh::read_obj(place).map_err(DocumentError::new)?;
-        known.insert(file.clone(), Arc::new(mesh));
+        known.meshes.insert(file.clone(), Arc::new(mesh));
     }
     Ok(known)
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::splice::Splice;
 use crate::scene::Scene;
 use crate::scene::fields::{LISTS, Need};
-use crate::scene::read::{meshes, text_with};
+use crate::scene::read::{Known, text_with};
 use crate::scene::toml_text::bare_or_quoted;
 use crate::scene::value::Names;
 use crate::scene::write::{self, Content, Defaults, Node, tree};
@@ -34,9 +34,9 @@ pub(super) fn patch(text: &str, old: &Scene, new: &Scene) -> Patched {
     }
 }
 
-/// Whether a text reads as the scene with this tree, mesh files taken as they are.
+/// Whether a text reads as the scene with this tree, mesh and image files taken as they are.
 fn reads_as(text: &str, scene: &Scene, wanted: &[Node]) -> bool {
-    let read = text_with(text, Path::new(""), meshes(scene));
+    let read = text_with(text, Path::new(""), Known::of(scene));
     read.is_ok_and(|read| tree(&read) == wanted)
 }
 

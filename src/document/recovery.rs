@@ -128,7 +128,7 @@ impl Snapshot {
     pub fn write(&self) -> Result<(), DocumentError> {
         let Base { text, scene } = &self.base;
         let original = self.original.as_deref();
-        // mesh files are named absolutely, so that the work stands for itself
+        // mesh and image files are named absolutely, so that the work stands for itself
         let mut absolute = (*self.scene).clone();
         let folder = original.map_or(Path::new("."), folder_of);
         let names = make_absolute(&mut absolute, folder);
@@ -155,17 +155,16 @@ impl Snapshot {
     }
 }
 
-/// Names the mesh files of a scene absolutely; returns the names they had, by their new ones.
+/// Names the mesh and image files of a scene absolutely; returns the names they had, by their new ones.
 fn make_absolute(scene: &mut Scene, folder: &Path) -> serde_json::Map<String, Value> {
     let mut names = serde_json::Map::new();
-    for solid in &mut scene.solids {
-        let crate::scene::Shape::Mesh { file, .. } = &mut solid.shape else { continue };
+    scene.each_file(&mut |file| {
         let place = super::relocate::resolved(&folder.join(&*file));
         if let Some(place) = place.to_str() {
             let old = std::mem::replace(file, place.to_owned());
             names.insert(place.to_owned(), Value::from(old));
         }
-    }
+    });
     names
 }
 
@@ -189,7 +188,7 @@ impl Found {
         let scene = read::text_with(text, &self.file, known(&found)?)
             .map_err(|error| with_missing(error.to_string(), text, folder, &found))?;
         let mut edited = replaced(&scene, &found, folder);
-        rename_meshes(&mut edited, &kept["mesh_names"]);
+        rename_files(&mut edited, &kept["mesh_names"]);
         let mut document = Document::of(&self.title, text, scene);
         document.is_rescued = true;
         if let Some(base) = kept["base"].as_str()
@@ -214,22 +213,20 @@ impl Found {
     }
 }
 
-/// The scene of the text that was opened, if it can still be read; meshes that the work holds too
+/// The scene of the text that was opened, if it can still be read; meshes and images that the work holds too
 /// are not read again.
 fn base_scene(text: &str, folder: &Path, edited: &Scene) -> Option<Arc<Scene>> {
-    let known = read::meshes(edited);
+    let known = read::Known::of(edited);
     read::text_with(text, &folder.join("scene.toml"), known).ok().map(Arc::new)
 }
 
-/// Gives mesh files the names back that they had in the scene.
-fn rename_meshes(scene: &mut Scene, names: &Value) {
-    for solid in &mut scene.solids {
-        if let crate::scene::Shape::Mesh { file, .. } = &mut solid.shape
-            && let Some(name) = names[&*file].as_str()
-        {
+/// Gives mesh and image files the names back that they had in the scene.
+fn rename_files(scene: &mut Scene, names: &Value) {
+    scene.each_file(&mut |file| {
+        if let Some(name) = names[&*file].as_str() {
             *file = name.to_owned();
         }
-    }
+    });
 }
 
 /// What a recovery file holds; `None` if it is damaged.

@@ -1,23 +1,22 @@
-//! Paths of mesh files, which are relative to the scene's file, when that file moves.
+//! Paths of mesh and image files, which are relative to the scene's file, when that file moves.
 
 use std::path::{Component, Path, PathBuf};
 
-use crate::scene::{Scene, Shape};
+use crate::scene::Scene;
 
-/// Rewrites the relative mesh paths of a scene that moves from one folder to another, so that they
+/// Rewrites the relative mesh and image paths of a scene that moves from one folder to another, so that they
 /// point to the same files; absolute ones stay. A path that cannot be written in UTF-8 stays too.
 pub(super) fn relocate(scene: &mut Scene, from: &Path, to: &Path) {
     if resolved(from) == resolved(to) {
         return;
     }
-    for solid in &mut scene.solids {
-        if let Shape::Mesh { file, .. } = &mut solid.shape
-            && !Path::new(file).is_absolute()
+    scene.each_file(&mut |file| {
+        if !Path::new(file).is_absolute()
             && let Some(moved) = relative(&from.join(&*file), to)
         {
             *file = moved;
         }
-    }
+    });
 }
 
 /// How a scene in `folder` names `target`: relative if that is possible, with `/` between names.

@@ -2,7 +2,7 @@
 
 use super::patch::renamed;
 use crate::color::{Rgb, srgb_byte};
-use crate::scene::fields::{self, Visit};
+use crate::scene::fields::{self, BUMPS, TEXTURES, Visit};
 use crate::scene::value::Names;
 use crate::scene::write::{Content, Node, nodes};
 use crate::scene::{Material, Scene};
@@ -174,7 +174,7 @@ fn collect(owner: &Owner, table: &str, old: &[Node], new: &[Node], all: &mut Vec
     for node in new {
         // the colours of a pattern are told apart from the surface's by its name
         let key = match table {
-            "checker" => format!("{table} {}", node.key),
+            _ if is_pattern(table) => format!("{table} {}", node.key),
             _ => node.key.clone(),
         };
         let other = old.iter().find(|other| other.key == node.key);
@@ -194,13 +194,20 @@ fn collect(owner: &Owner, table: &str, old: &[Node], new: &[Node], all: &mut Vec
     }
 }
 
+/// Whether the keys of a table say little without it.
+fn is_pattern(table: &str) -> bool {
+    table != "color" && TEXTURES.iter().chain(BUMPS).any(|key| *key == table)
+}
+
 /// Both values in short, told apart; `None` if they are too long to show.
 fn values(key: &str, old: &str, new: &str) -> Option<(String, String)> {
     if let (Some(old), Some(new)) = (text(old), text(new)) {
         return Some((old, new));
     }
     let (old, new) = (numbers(old)?, numbers(new)?);
-    let is_color = ["color", "filter", "ambient_light", "checker a", "checker b"].contains(&key);
+    let last = key.rsplit(' ').next().unwrap_or_default();
+    let is_color = ["color", "filter", "ambient_light"].contains(&key)
+        || ["a", "b", "tint", "below", "level", "above"].contains(&last) && last != key;
     let pair = if is_color { hex(&old).zip(hex(&new)) } else { None };
     pair.filter(|(old, new)| old != new).or_else(|| Some(short(&old, &new)))
 }

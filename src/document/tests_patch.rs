@@ -12,7 +12,7 @@ use crate::color::Rgb;
 use crate::scene::mesh::Mesh;
 use crate::scene::path::{Parameter, parameters, set};
 use crate::scene::range::Kind;
-use crate::scene::read::{Meshes, text_with};
+use crate::scene::read::{Known, text_with};
 use crate::scene::write::{self, tree};
 use crate::scene::{Area, Lens, Light, LightPlace, Material, Paint, Scene, Shape, Solid};
 use crate::scene::{check, fields};
@@ -134,8 +134,10 @@ fn texts() -> Vec<String> {
 }
 
 fn read(text: &str) -> Scene {
-    let known = Meshes::from([("a b.obj".to_owned(), Arc::new(Mesh::default()))]);
-    text_with(text, Path::new("s.toml"), known).unwrap_or_else(|error| panic!("{error}\n{text}"))
+    let meshes = [("a b.obj".to_owned(), Arc::new(Mesh::default()))].into();
+    let known = Known { meshes, ..Known::default() };
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/s.toml");
+    text_with(text, &file, known).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
 /// The text of the edited scene, which must read back as that scene.
@@ -263,7 +265,8 @@ fn restructure(scene: &mut Scene, random: &mut Random) {
             *paint = match paint {
                 Paint::Solid(_) => Paint::named("texture"),
                 Paint::Checker { .. } if random.below(2) == 0 => Paint::Solid(Rgb::WHITE),
-                Paint::Checker { .. } => Paint::Solid(Rgb([0.1, 0.2, 0.3])),
+                Paint::Checker { .. } => Paint::named(fields::TEXTURES[1 + random.below(3)]),
+                _ => Paint::Solid(Rgb([0.1, 0.2, 0.3])),
             };
         }
         7 if !scene.materials.is_empty() => {

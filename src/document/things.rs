@@ -166,7 +166,7 @@ mod tests {
 
     use super::*;
     use crate::document::patch::patch;
-    use crate::scene::read::{Meshes, text_with};
+    use crate::scene::read::{Known, text_with};
     use crate::scene::{check, write::tree};
 
     const TEXT: &str = r#"version = 1 # first
@@ -192,7 +192,7 @@ cube = { box = { min = [0, 0, 0], max = [1, 1, 1] }, material = "blue" }
 "#;
 
     fn scene() -> Scene {
-        text_with(TEXT, Path::new("s.toml"), Meshes::new()).unwrap()
+        text_with(TEXT, Path::new("s.toml"), Known::default()).unwrap()
     }
 
     /// The text that saving the edited scene gives; it reads back as that scene.
@@ -200,7 +200,7 @@ cube = { box = { min = [0, 0, 0], max = [1, 1, 1] }, material = "blue" }
         assert_eq!(check::validate(edited), []);
         let patched = patch(TEXT, &scene(), edited);
         assert!(!patched.comments_lost);
-        let back = text_with(&patched.text, Path::new("s.toml"), Meshes::new()).unwrap();
+        let back = text_with(&patched.text, Path::new("s.toml"), Known::default()).unwrap();
         assert!(tree(&back) == tree(edited));
         patched.text
     }

@@ -1,5 +1,6 @@
 //! Gathers the highlight samples of a tile, list by list, and puts them together by material.
 
+use super::Folder;
 use super::transport::{HighlightGroup, HighlightList, Highlights};
 use crate::film::layout::LANES;
 
@@ -11,6 +12,35 @@ pub(super) struct HighlightSample {
     pub(super) lane: u16,
     pub(super) angle: f32,
     pub(super) weight: f32,
+}
+
+impl Folder {
+    /// Sorts a block's highlight samples into lists, by slot, then lane, then sample.
+    pub(super) fn sort_highlights(&mut self, block: usize) {
+        let range = self.highlight_starts[block]..self.highlight_starts[block + 1];
+        let samples = &self.highlights[range.start as usize..range.end as usize];
+        let first = self.starts[block];
+        // A counting sort by slot. Samples were found lane after lane, and it keeps their order.
+        self.order.clear();
+        self.order.resize((self.starts[block + 1] - first) as usize, 0);
+        for s in samples {
+            self.order[(s.slot - first) as usize] += 1;
+        }
+        let mut next = 0;
+        for count in &mut self.order {
+            (*count, next) = (next, next + *count);
+        }
+        self.sorted.clear();
+        self.sorted.resize(samples.len(), HighlightSample::default());
+        for s in samples {
+            let at = &mut self.order[(s.slot - first) as usize];
+            self.sorted[*at as usize] = *s;
+            *at += 1;
+        }
+        for list in self.sorted.chunk_by(|a, b| a.slot == b.slot) {
+            self.lists.add(self.places[list[0].slot as usize], list);
+        }
+    }
 }
 
 /// The lists of a tile in the order in which they were found; memory is kept from tile to tile.

@@ -8,20 +8,22 @@ mod sign;
 pub mod stay;
 #[cfg(test)]
 mod tests;
+mod tones;
 pub mod transport;
 pub mod trie;
 
 use highlight::HighlightPower;
 use lists::{HighlightLists, HighlightSample};
 use stay::{GONE, Stay, Staying};
+use tones::MISSED;
 use transport::{
     BlockStart, Frontier, FrontierMark, HighlightList, Plane, SPARSE_LANES, Single, TransportTile,
 };
 use trie::{Marks, ROOT, Trie};
 
-use crate::color::Rgb;
 use crate::film::layout::LANES;
 use crate::forest::tree::{BLOCKED, Branch, LightHit, Node, Reader};
+use crate::geometry::Tone;
 use crate::scene::factor::{Factor, Kind};
 use crate::scene::model::Peak;
 
@@ -35,7 +37,8 @@ pub struct Folder {
     trie: Trie,
     memo: Vec<Lookup>,
     position: usize,
-    /// Paths still to be followed, with their geometric weights.
+    /// Paths still to be followed, with their geometric weights; with [`MISSED`] those whose ray saw a
+    /// background that is not one colour.
     stack: Vec<(u32, f32)>,
     /// Per trie id the stamp of the block that last used it and its slot there.
     slots: Vec<(u32, u32)>,
@@ -186,7 +189,7 @@ impl Folder {
                 if reader.sample() {
                     self.tree(reader, lane, names);
                 } else {
-                    self.background(ROOT, lane, reader.weight());
+                    self.sky(reader, ROOT, lane, reader.weight());
                 }
             }
         }
@@ -212,22 +215,30 @@ impl Folder {
     #[inline(always)]
     fn tree(&mut self, reader: &mut Reader, lane: usize, names: &Names) {
         self.stack.push((ROOT, reader.weight()));
+        let varied = !reader.is_sky_even();
         while let Some((path, weight)) = self.stack.pop() {
+            if path & MISSED != 0 {
+                self.sky(reader, path & !MISSED, lane, weight);
+                continue;
+            }
             let node = reader.node();
-            if node.whole {
+            let tone = if node.toned { Some(reader.tone()) } else { None };
+            if let (Some(tone), true) = (tone, node.whole) {
+                self.toned(path, (Kind::Ambient, node.material), tone, lane, weight);
+            } else if node.whole {
                 let ambient = Factor::new(Kind::Ambient, node.material, node.slot);
                 self.add(path, ambient, lane, weight);
             }
             for _ in 0..node.lights {
                 let (hit, crossed) = reader.light();
-                self.light((path, weight), node, (hit, crossed), lane, names);
+                self.light((path, weight), (node, tone), (hit, crossed), lane, names);
             }
             let [mirrored, passed] = node.weights().map(|w| w * weight);
             let mirror = if node.ends.total() { Kind::TotalReflect } else { Kind::Reflect };
             let transmit = Factor::new(Kind::Transmit, node.material, 0);
-            self.branch((path, passed), node.ends.transmitted(), transmit, lane);
+            self.branch((path, passed), (node.ends.transmitted(), varied), transmit, lane);
             let reflect = Factor::new(mirror, node.material, 0);
-            self.branch((path, mirrored), node.ends.reflected(), reflect, lane);
+            self.branch((path, mirrored), (node.ends.reflected(), varied), reflect, lane);
         }
     }
 
@@ -235,7 +246,7 @@ impl Folder {
     fn light(
         &mut self,
         (path, weight): (u32, f32),
-        node: &Node,
+        (node, tone): (&Node, Option<Tone>),
         (hit, crossed): (&LightHit, &[u32]),
         lane: usize,
         names: &Names,
@@ -253,6 +264,11 @@ impl Folder {
         let mut arriving = self.find(path, Factor::new(Kind::Light, light, 0));
         if !crossed.is_empty() {
             arriving = self.filtered(arriving, crossed, names);
+        }
+        if let Some(tone) = tone
+            && !hit.is_behind()
+        {
+            return self.toned_light(arriving, (node, tone), hit, lane, weight);
         }
         let highlight = if hit.is_behind() {
             Factor::new(Kind::Through, node.material, 0)
@@ -304,7 +320,13 @@ impl Folder {
     }
 
     #[inline(always)]
-    fn branch(&mut self, (path, weight): (u32, f32), branch: Branch, factor: Factor, lane: usize) {
+    fn branch(
+        &mut self,
+        (path, weight): (u32, f32),
+        (branch, varied_sky): (Branch, bool),
+        factor: Factor,
+        lane: usize,
+    ) {
         // No parameter brings a faint branch to life, or one that went astray: they are no terms of the
         // frontier.
         if matches!(branch, Branch::Absent | Branch::Faint | Branch::Astray) {
@@ -313,6 +335,8 @@ impl Folder {
         let child = self.find(path, factor);
         match branch {
             Branch::Grown => self.stack.push((child, weight)),
+            // What it saw stands in the order in which branches were followed.
+            Branch::Missed if varied_sky => self.stack.push((child | MISSED, weight)),
             Branch::Missed => self.background(child, lane, weight),
             _ => self.edge(child, lane, Marks::FRONTIER),
         }
@@ -386,14 +410,6 @@ impl Folder {
     fn add(&mut self, parent: u32, factor: Factor, lane: usize, value: f32) {
         let slot = self.term(parent, factor);
         self.planes[slot as usize].0[lane & (LANES - 1)] += value;
-    }
-
-    /// Adds a coefficient of three numbers, as where a path meets a texel: a term per channel.
-    /// No surface of today has a colour per point; textures will.
-    pub fn add_colored(&mut self, term: u32, lane: usize, values: Rgb) {
-        for (channel, value) in (0u16..).zip(values.0) {
-            self.add(term, Factor::new(Kind::Channel, channel, 0), lane, value);
-        }
     }
 
     /// Ends a tile: puts its terms in canonical order and computes its highlights.
@@ -562,32 +578,5 @@ impl Folder {
             local[*id as usize] = index;
         }
         local
-    }
-
-    /// Sorts a block's highlight samples into lists, by slot, then lane, then sample.
-    fn sort_highlights(&mut self, block: usize) {
-        let range = self.highlight_starts[block]..self.highlight_starts[block + 1];
-        let samples = &self.highlights[range.start as usize..range.end as usize];
-        let first = self.starts[block];
-        // A counting sort by slot. Samples were found lane after lane, and it keeps their order.
-        self.order.clear();
-        self.order.resize((self.starts[block + 1] - first) as usize, 0);
-        for s in samples {
-            self.order[(s.slot - first) as usize] += 1;
-        }
-        let mut next = 0;
-        for count in &mut self.order {
-            (*count, next) = (next, next + *count);
-        }
-        self.sorted.clear();
-        self.sorted.resize(samples.len(), HighlightSample::default());
-        for s in samples {
-            let at = &mut self.order[(s.slot - first) as usize];
-            self.sorted[*at as usize] = *s;
-            *at += 1;
-        }
-        for list in self.sorted.chunk_by(|a, b| a.slot == b.slot) {
-            self.lists.add(self.places[list[0].slot as usize], list);
-        }
     }
 }

@@ -1,6 +1,7 @@
 //! Folding of small made-up trees against sums done by hand.
 
 use super::*;
+use crate::color::Rgb;
 use crate::forest::sink::{Side, Sink};
 use crate::forest::tree::{Ends, NO_FRESNEL, TileTrees};
 use crate::scene::model::Measure;
@@ -11,7 +12,7 @@ const ALL: [u32; LANES] = [2; LANES];
 fn node(material: u16, reflected: Branch) -> Node {
     let ends = Ends::new(reflected, Branch::Zero, false);
     let (t, primitive, lights, slot, fresnel) = (1.0, 0, 0, 0, NO_FRESNEL);
-    Node { t, primitive, material, lights, slot, whole: true, ends, fresnel }
+    Node { t, primitive, material, lights, slot, whole: true, toned: false, ends, fresnel }
 }
 
 /// The peak of Phong's exponent.
@@ -152,4 +153,70 @@ fn a_new_exponent_gives_what_a_fresh_fold_gives() {
     assert!(HighlightPower::default().refold(&mut kept, &peaks, 0.5), "coefficients changed");
     assert_eq!(kept, fresh);
     assert!(!HighlightPower::default().refold(&mut kept, &peaks, 0.5), "nothing more changes");
+}
+
+/// A node of material 0 with a tone, lit by light 0 from the front, that reflects the sky.
+fn toned(tone: Tone, sky: Option<Tone>) -> TileTrees {
+    let mut trees = TileTrees::default();
+    trees.block();
+    for _ in 0..LANES {
+        trees.sample(true);
+        let name = trees.node(Node { toned: true, ..node(0, Branch::Grown) });
+        trees.tone(tone);
+        trees.light(lit(0, 0.5, 0.25, 0), &[]);
+        trees.missed(name, Side::Reflected);
+        trees.sample(false);
+        // The tree's ray first, then the sample's.
+        for sky in sky.into_iter().flat_map(|sky| [sky, Tone::Texel(Rgb([8.0, 4.0, 0.0]))]) {
+            trees.sky(sky);
+        }
+    }
+    trees.validate(3, 3, 1);
+    trees
+}
+
+fn slot(kind: Kind, slot: u8) -> Factor {
+    Factor::new(kind, 0, slot)
+}
+
+#[test]
+fn a_blend_is_two_terms_whose_coefficients_make_one() {
+    let (trie, tile) = folded(&toned(Tone::Blend { slot: 0, share: 0.25 }, None));
+    let at = |product: &[Factor]| coefficients(&trie, &tile, product)[3];
+    // Two samples of weight ½: the node of one of them.
+    assert_eq!(at(&[slot(Kind::Ambient, 0)]), 0.375);
+    assert_eq!(at(&[slot(Kind::Ambient, 1)]), 0.125);
+    let light = f(Kind::Light, 0);
+    assert_eq!(at(&[light, slot(Kind::Diffuse, 1)]), 0.0625);
+    // A highlight of 0.75^8, Phong's, times its share.
+    let whole = at(&[light, slot(Kind::Specular, 0)]) + at(&[light, slot(Kind::Specular, 1)]);
+    assert!((whole - 0.5 * 0.75f32.powi(8)).abs() < 1e-6, "{whole}");
+    assert_eq!(at(&[f(Kind::Reflect, 0), f(Kind::Background, 0)]), 0.5);
+    let pure = folded(&toned(Tone::Blend { slot: 0, share: 0.0 }, None));
+    let product = [slot(Kind::Ambient, 1)];
+    assert_eq!(coefficients(&pure.0, &pure.1, &product), [0.0; LANES]);
+    let is_term = |id: &u32| pure.0.factors(*id) == product;
+    assert!(!pure.1.terms.iter().any(is_term), "no share, no term");
+}
+
+#[test]
+fn a_texel_is_a_term_per_channel_beside_what_it_does_not_multiply() {
+    let texel = Tone::Texel(Rgb([0.5, 0.0, 2.0]));
+    let (trie, tile) = folded(&toned(texel, Some(Tone::Blend { slot: 1, share: 0.5 })));
+    let at = |product: &[Factor]| coefficients(&trie, &tile, product)[3];
+    let channels =
+        |before: &[Factor]| [0, 1, 2].map(|c| at(&[before, &[f(Kind::Channel, c)]].concat()));
+    assert_eq!(channels(&[slot(Kind::Ambient, 0)]), [0.25, 0.0, 1.0]);
+    assert_eq!(at(&[slot(Kind::Ambient, 1)]), 0.5);
+    let light = f(Kind::Light, 0);
+    assert_eq!(channels(&[light, slot(Kind::Diffuse, 0)]), [0.125, 0.0, 0.5]);
+    assert_eq!(at(&[light, slot(Kind::Diffuse, 1)]), 0.0);
+    let white = at(&[light, slot(Kind::Specular, 1)]);
+    let tinted = channels(&[light, slot(Kind::Specular, 0)]);
+    assert!(white > 0.0 && tinted == [0.5 * white, 0.0, 2.0 * white], "{white} {tinted:?}");
+    // What was reflected saw a blend, the other sample a texel.
+    let mirrored = |slot_| at(&[f(Kind::Reflect, 0), slot(Kind::Background, slot_)]);
+    assert_eq!([mirrored(0), mirrored(1), mirrored(2)], [0.0, 0.25, 0.25]);
+    assert_eq!(channels(&[slot(Kind::Background, 0)]), [4.0, 2.0, 0.0]);
+    assert_eq!(at(&[slot(Kind::Background, 1)]), 0.5);
 }

@@ -12,7 +12,7 @@ use super::shadow::Site;
 use super::sink::{Side, Sink};
 use super::tree::{BLOCKED, Branch, Ends, LightHit, Node, TileTrees, weights};
 use crate::film::layout::{LANES, Place};
-use crate::geometry::Hit;
+use crate::geometry::{Hit, Tone};
 use crate::progress::Progress;
 use crate::scene::factor::{End, Factor, Kind, PathWeight};
 
@@ -122,6 +122,16 @@ impl Sink for Again {
         self.grown.missed(node, side);
         let ends = &mut self.kept.nodes[self.places[node as usize] as usize].ends;
         *ends = ends.with(side, Branch::Missed);
+    }
+
+    #[inline(always)]
+    fn tone(&mut self, tone: Tone) {
+        self.grown.tone(tone);
+    }
+
+    #[inline(always)]
+    fn sky(&mut self, tone: Tone) {
+        self.grown.sky(tone);
     }
 
     #[inline(always)]
@@ -244,7 +254,7 @@ impl Grower<'_> {
     ) -> Result<(), Stop> {
         let recalled = kept.node();
         let KeptNode { t, primitive, lights: _, ends } = *recalled.node;
-        let Arrival { at, surface, crossing, eta: _ } =
+        let Arrival { at, length, tone, surface, crossing, eta: _ } =
             self.arrive(worker, from, Hit { t, primitive });
         let fresnel = self.reflectance(at.material, &surface);
         let [mirrored, passed] = weights(fresnel);
@@ -271,10 +281,22 @@ impl Grower<'_> {
             Ends::new(branch(&reflected), branch(&transmitted), ends.total())
         };
         let (material, slot, lights) = (at.material, at.slot, 0);
-        let folded = of(|next| next.folded);
-        let node =
-            Node { t, primitive, material, lights, slot, whole: false, ends: folded, fresnel };
+        let (folded, toned) = (of(|next| next.folded), tone.is_some());
+        let node = Node {
+            t,
+            primitive,
+            material,
+            lights,
+            slot,
+            whole: false,
+            toned,
+            ends: folded,
+            fresnel,
+        };
         let name = sink.part(node, of(|next| next.kept));
+        if let Some(tone) = tone {
+            sink.tone(tone);
+        }
         if scope.has_lights(from.scope) {
             let site = Site { at: &at, surface: &surface, path: from.way };
             let mut recalled = Some(recalled);
@@ -304,7 +326,18 @@ impl Grower<'_> {
             };
             let way = ways[usize::from(side == Side::Transmitted)];
             let (parent, geometric) = (Some((name, side)), by * from.geometric);
-            let next = Pending { ray, leaving, way, path, geometric, parent, medium, known, scope };
+            let next = Pending {
+                ray,
+                length,
+                leaving,
+                way,
+                path,
+                geometric,
+                parent,
+                medium,
+                known,
+                scope,
+            };
             worker.pending.push(next);
         };
         queue(transmitted, Side::Transmitted, passed, crossing.behind);

@@ -4,6 +4,7 @@ use fearless_simd::{Level, Simd, dispatch};
 use glam::DVec3;
 
 use super::camera::View;
+use super::cone::Cone;
 use super::counts::SampleMap;
 use super::eye::Eye;
 use super::kept::{Recall, Recalled};
@@ -19,7 +20,7 @@ use super::surface::Surface;
 use super::tree::{BEHIND, Branch, Ends, NO_FRESNEL, Node, weights};
 use super::{Before, blur};
 use crate::film::layout::{LANES, Layout, Place};
-use crate::geometry::{Geometry, Hit, Interaction, Leaving, Ray, Stack};
+use crate::geometry::{Geometry, Hit, Interaction, Leaving, Ray, Stack, Tone};
 use crate::progress::{Cancelled, Progress};
 use crate::scene::factor::{End, Factor, FactorValues, Kind, PathWeight};
 use crate::scene::model::{Lobes, Model};
@@ -63,6 +64,9 @@ pub struct Grower<'a> {
     weighing: Vec<bool>,
     /// With what the kept trees were grown.
     before: Before,
+    /// Per solid whether rays go on from it elsewhere than in the kept trees; empty: nowhere.
+    bent: Vec<bool>,
+    pub(super) cone: Cone,
     pub(super) view: View,
     /// Of a scene whose camera rays are not only the pinhole's within their pixels.
     pub(super) eye: Option<Eye>,
@@ -88,6 +92,9 @@ pub struct Worker {
 /// A surface as a ray meets it, and the media on both sides.
 pub(super) struct Arrival {
     pub(super) at: Interaction,
+    /// Of the path from the eye.
+    pub(super) length: f64,
+    pub(super) tone: Option<Tone>,
     pub(super) surface: Surface,
     pub(super) crossing: Crossing,
     /// Index of refraction in front over that behind.
@@ -113,6 +120,8 @@ impl Limits<'_> {
 /// A ray still to be followed.
 pub(super) struct Pending {
     pub(super) ray: Ray,
+    /// Of the path from the eye to the ray's origin.
+    pub(super) length: f64,
     pub(super) leaving: Option<Leaving>,
     /// The hash of its string of reflections and transmissions.
     pub(super) way: u32,
@@ -132,6 +141,7 @@ impl Pending {
     pub(super) fn eye(ray: Ray, known: Known, scope: At) -> Pending {
         Pending {
             ray,
+            length: 0.0,
             leaving: None,
             way: ROOT_PATH,
             path: PathWeight::EYE,
@@ -205,6 +215,8 @@ impl<'a> Grower<'a> {
             iors,
             lobes,
             before: before.clone(),
+            bent: Vec::new(),
+            cone: Cone::new(&scene.camera, scene.picture.size),
             view: View::new(&scene.camera, scene.picture.size),
             eye: Eye::of(scene),
             layout: Layout::new(scene.picture.size),
@@ -212,6 +224,13 @@ impl<'a> Grower<'a> {
             map: None,
             level: Level::new(),
         }
+    }
+
+    /// The same, where the solids that `bent` names had another bump when the kept trees were grown: no
+    /// kept ray goes on from them.
+    pub fn with_bent(mut self, bent: Vec<bool>) -> Grower<'a> {
+        self.bent = bent;
+        self
     }
 
     /// Per light the key of its records in kept trees.
@@ -359,19 +378,24 @@ impl<'a> Grower<'a> {
             (None, Some((node, side))) => sink.missed(node, side),
             (None, None) => sink.sample(false),
         }
+        if hit.is_none() {
+            self.sky(&next.ray, sink);
+        }
         Ok(())
     }
 
     /// What a ray finds where it meets a surface.
     #[inline(always)]
     pub(super) fn arrive(&self, worker: &mut Worker, from: &Pending, hit: Hit) -> Arrival {
-        let at = self.geometry.interaction(&worker.stack, &from.ray, hit);
+        let mut at = self.geometry.interaction(&worker.stack, &from.ray, hit);
+        let length = from.length + hit.t;
+        let tone = self.tone(&worker.stack, &mut at, length);
         let mut surface = Surface::new(&at, from.ray.direction);
         let crossing = worker.media.cross(from.medium, &at, surface.entering);
         let eta = crossing.eta(&self.iors);
         let refracted = surface.refract(eta);
         (surface.contrast, surface.refracted) = (crossing.contrast(&self.iors), refracted);
-        Arrival { at, surface, crossing, eta }
+        Arrival { at, length, tone, surface, crossing, eta }
     }
 
     /// Stores a node, asks its lights, and queues its branches.
@@ -384,7 +408,7 @@ impl<'a> Grower<'a> {
         (hit, mut recalled): (Hit, Option<Recalled<'_>>),
         sink: &mut K,
     ) -> Result<(), Stop> {
-        let Arrival { at, surface, crossing, eta } = self.arrive(worker, from, hit);
+        let Arrival { at, length, tone, surface, crossing, eta } = self.arrive(worker, from, hit);
         let refracted = surface.refracted;
         let total = refracted.is_none();
         let fresnel = self.reflectance(at.material, &surface);
@@ -413,10 +437,14 @@ impl<'a> Grower<'a> {
             lights: 0,
             slot,
             whole: true,
+            toned: tone.is_some(),
             ends,
             fresnel,
         };
         let name = sink.node(node);
+        if let Some(tone) = tone {
+            sink.tone(tone);
+        }
         let site = Site { at: &at, surface: &surface, path: from.way };
         for light in 0..self.lamps.len() as u16 {
             self.light(simd, worker, &site, light, &mut recalled, sink)?;
@@ -435,12 +463,25 @@ impl<'a> Grower<'a> {
             let way = ways[usize::from(side == Side::Transmitted)];
             let (parent, geometric) = (Some((name, side)), by * from.geometric);
             let scope = At::ALL;
-            let next = Pending { ray, leaving, way, path, geometric, parent, medium, known, scope };
+            let next = Pending {
+                ray,
+                length,
+                leaving,
+                way,
+                path,
+                geometric,
+                parent,
+                medium,
+                known,
+                scope,
+            };
             worker.pending.push(next);
         };
+        let straight = !self.bent.get(at.solid as usize).is_some_and(|bent| *bent);
         let before = self.before.lobes[at.solid as usize];
         if let Some(transmitted) = transmitted {
-            let same = before[1] == translucency && self.refracts_as_before(&crossing, eta);
+            let same =
+                straight && before[1] == translucency && self.refracts_as_before(&crossing, eta);
             let known = known(ends.map(Ends::transmitted), same, transmitted.is_ok());
             queue(transmitted, passed, Side::Transmitted, crossing.behind, known);
         } else if ends.map(Ends::transmitted) == Some(Branch::Grown) {

@@ -21,7 +21,17 @@ impl KeptNode {
     /// What is kept of a node.
     #[inline(always)]
     pub(super) fn of(node: &Node) -> KeptNode {
-        let Node { t, primitive, material: _, lights, slot: _, whole: _, ends, fresnel: _ } = *node;
+        let Node {
+            t,
+            primitive,
+            material: _,
+            lights,
+            slot: _,
+            whole: _,
+            toned: _,
+            ends,
+            fresnel: _,
+        } = *node;
         KeptNode { t, primitive, lights, ends }
     }
 }
@@ -128,7 +138,9 @@ impl KeptTrees {
 
     /// Appends a block just grown, the first one in `grown`. `keys` has one key per light.
     pub fn push_grown(&mut self, grown: &TileTrees, keys: &[u16]) {
-        let TileTrees { blocks: _, hits, weights: _, nodes, lights, crossings } = grown;
+        // Colours are found again from the points.
+        let TileTrees { blocks: _, hits, weights: _, nodes, lights, crossings, tones: _, skies: _ } =
+            grown;
         self.hits.extend(hits.chunks(64).map(|bits| {
             bits.iter().enumerate().fold(0u64, |word, (i, &hit)| word | u64::from(hit) << i)
         }));

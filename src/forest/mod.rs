@@ -3,6 +3,7 @@
 pub mod again;
 mod blur;
 pub mod camera;
+mod cone;
 pub mod counts;
 mod eye;
 pub mod filter;
@@ -20,6 +21,7 @@ pub mod signature;
 pub mod sink;
 mod surface;
 pub mod thin;
+mod tones;
 pub mod tree;
 
 use std::sync::Arc;

@@ -4,6 +4,7 @@ use crate::color::Rgb;
 pub use crate::scene::PILOTS;
 
 use super::tree::{BEHIND, BLOCKED, Branch, LightHit, Node, Reader};
+use crate::geometry::Tone;
 
 /// Levels of a tree that count: the surface seen, what it mirrors or shows behind it, and what that
 /// does.
@@ -88,14 +89,25 @@ fn in_units(x: f32) -> u16 {
 fn of_sample(reader: &mut Reader, solids: &impl Solids) -> Signature {
     let mut hash = Hash(0x9e37_79b9_7f4a_7c15);
     let mut values = [0.0f32; VALUES];
-    let mut levels = vec![0usize];
-    if !reader.sample() {
-        levels.clear();
+    // Whether there is a node, or a ray that left the scene; where all of those see one colour, they
+    // are left out.
+    let mut levels = vec![(0usize, reader.sample())];
+    if reader.is_sky_even() {
+        levels.retain(|(_, met)| *met);
     }
-    while let Some(level) = levels.pop() {
-        let node = *reader.node();
+    while let Some((level, met)) = levels.pop() {
         let share = 1.0 / (1 << level.min(LEVELS)) as f32;
         let counts = level < LEVELS;
+        if !met {
+            let tone = reader.sky().map_or(0.0, shade);
+            values[2] += if counts { share * tone } else { 0.0 };
+            continue;
+        }
+        let node = *reader.node();
+        if node.toned {
+            let tone = shade(reader.tone());
+            values[2] += if counts { share * tone } else { 0.0 };
+        }
         if counts {
             hash.node(&node, solids);
         }
@@ -107,10 +119,23 @@ fn of_sample(reader: &mut Reader, solids: &impl Solids) -> Signature {
             }
         }
         let below = [node.ends.transmitted(), node.ends.reflected()];
-        levels.extend(below.iter().filter(|&&b| b == Branch::Grown).map(|_| level + 1));
+        let even = reader.is_sky_even();
+        levels.extend(below.iter().filter_map(|branch| match branch {
+            Branch::Grown => Some((level + 1, true)),
+            Branch::Missed if !even => Some((level + 1, false)),
+            _ => None,
+        }));
     }
     let values = values.map(in_units);
     Signature { seen: (hash.0 >> 32) as u32 & !1, low: values, high: values }
+}
+
+/// One number for a tone: where in its palette it is, or how bright its texel is.
+fn shade(tone: Tone) -> f32 {
+    match tone {
+        Tone::Blend { slot, share } => f32::from(slot) + share,
+        Tone::Texel(Rgb([r, g, b])) => ((r + g + b) / 3.0).min(1.0),
+    }
 }
 
 /// How near a light is to the middle of its highlight, whatever the exponent: a half where a cosine

@@ -1,6 +1,7 @@
 //! What receives trees as they are grown.
 
 use super::tree::{LightHit, Node};
+use crate::geometry::Tone;
 
 /// Which branch of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,8 +25,12 @@ pub trait Sink {
     fn sample(&mut self, hit: bool);
     /// A node; gives the name by which [`Sink::missed`] refers to it.
     fn node(&mut self, node: Node) -> u32;
+    /// What colours the last node in place of its slot.
+    fn tone(&mut self, tone: Tone);
     /// The ray of this branch of a node left the scene.
     fn missed(&mut self, node: u32, side: Side);
+    /// What the last ray that left the scene saw of a background that is not one colour.
+    fn sky(&mut self, tone: Tone);
     /// A light in front of the last node.
     fn light(&mut self, hit: LightHit, crossed: &[u32]);
 }
@@ -48,6 +53,10 @@ impl Sink for Discard {
     }
     #[inline(always)]
     fn missed(&mut self, _: u32, _: Side) {}
+    #[inline(always)]
+    fn tone(&mut self, _: Tone) {}
+    #[inline(always)]
+    fn sky(&mut self, _: Tone) {}
     #[inline(always)]
     fn light(&mut self, _: LightHit, _: &[u32]) {}
 }

@@ -5,6 +5,10 @@ use glam::DVec3;
 use super::lobe;
 use crate::geometry::Interaction;
 
+/// Sine of the least angle between the surface and a ray that goes on from a bump, where the ray that
+/// arrives is steeper (as Cycles' `ensure_valid_specular_reflection`).
+const LEAST_RISE: f64 = 0.01;
+
 /// A surface as seen by the ray that met it: both normals on the ray's side.
 pub(super) struct Surface {
     pub(super) normal: DVec3,
@@ -13,6 +17,8 @@ pub(super) struct Surface {
     pub(super) to_eye: DVec3,
     /// Whether the ray comes from outside.
     pub(super) entering: bool,
+    /// Whether a bump bent the normal.
+    bumped: bool,
     /// Ratio of the indices in front and behind, for Fresnel's reflectance, once it is known.
     pub(super) contrast: f64,
     /// Direction of the refracted ray, once it is known.
@@ -27,8 +33,21 @@ impl Surface {
         let side = if entering { 1.0 } else { -1.0 };
         let geometric = at.geometric_normal * side;
         let smooth = at.shading_normal * side;
-        let normal = if smooth.dot(to_eye) > 0.0 { smooth } else { geometric };
-        Surface { normal, geometric, to_eye, entering, contrast: 1.0, refracted: None }
+        let facing = smooth.dot(to_eye);
+        let normal = match at.bumped {
+            _ if facing > 0.0 => smooth,
+            false => geometric,
+            // Flattened to the horizon as the eye sees it.
+            true => (smooth - to_eye * facing).try_normalize().unwrap_or(geometric),
+        };
+        let (contrast, refracted, bumped) = (1.0, None, at.bumped);
+        Surface { normal, geometric, to_eye, entering, bumped, contrast, refracted }
+    }
+
+    /// The least way out of the surface of a ray that goes on from a bump: flatter ones than the ray
+    /// that arrives are not lifted as high.
+    fn least_rise(&self) -> f64 {
+        LEAST_RISE.min(0.9 * self.geometric.dot(self.to_eye).max(0.0))
     }
 
     /// Fresnel's reflectance of the ray that met it.
@@ -45,6 +64,11 @@ impl Surface {
     pub(super) fn reflect(&self) -> DVec3 {
         let about = |n: DVec3| n * (2.0 * n.dot(self.to_eye)) - self.to_eye;
         let mirrored = about(self.normal);
+        if self.bumped {
+            // Lifted as if the normal, half way between it and the eye, were turned back.
+            let lack = self.least_rise() - mirrored.dot(self.geometric);
+            return (mirrored + self.geometric * lack.max(0.0)).normalize();
+        }
         let above = mirrored.dot(self.geometric) > 0.0;
         if above { mirrored } else { about(self.geometric) }.normalize()
     }
@@ -62,7 +86,93 @@ impl Surface {
             return Some(-self.to_eye);
         }
         let bent = through(self.normal)?;
+        if self.bumped {
+            let lack = self.least_rise() + bent.dot(self.geometric);
+            return Some((bent - self.geometric * lack.max(0.0)).normalize());
+        }
         let below = bent.dot(self.geometric) < 0.0;
         if below { Some(bent.normalize()) } else { through(self.geometric).map(DVec3::normalize) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Directions over the upper half, `tilt` from z in equal steps down to the horizon.
+    fn above() -> impl Iterator<Item = DVec3> {
+        (0..60).flat_map(|i| {
+            let tilt = (f64::from(i) + 0.5) / 60.0 * std::f64::consts::FRAC_PI_2;
+            (0..24).map(move |k| {
+                let turn = f64::from(k) * 15f64.to_radians();
+                DVec3::new(tilt.sin() * turn.cos(), tilt.sin() * turn.sin(), tilt.cos())
+            })
+        })
+    }
+
+    fn met(normal: DVec3, to_eye: DVec3, bumped: bool) -> Surface {
+        let at = Interaction {
+            point: DVec3::ZERO,
+            rest: DVec3::ZERO,
+            geometric_normal: DVec3::Z,
+            shading_normal: normal,
+            solid: 0,
+            material: 0,
+            slot: 0,
+            bumped,
+            thin: false,
+            primitive: 0,
+        };
+        Surface::new(&at, -to_eye)
+    }
+
+    #[test]
+    fn no_ray_from_a_bump_goes_below_what_it_left() {
+        let (mut lifted, mut flattened, mut pressed) = (0, 0, 0);
+        for to_eye in above().chain(above().map(|v| -v)) {
+            let side = to_eye.z.signum();
+            for degrees in [5.0f64, 20.0, 60.0] {
+                let (sine, cosine) = degrees.to_radians().sin_cos();
+                for normal in [DVec3::X, DVec3::Y, -DVec3::X].map(|b| b * sine + DVec3::Z * cosine)
+                {
+                    let surface = met(normal, to_eye, true);
+                    assert!(surface.normal.dot(to_eye) > -1e-15, "the normal faces the eye");
+                    flattened += usize::from((surface.normal - normal * side).length() > 1e-9);
+                    let mirrored = surface.reflect();
+                    let rise = mirrored.z * side;
+                    assert!(rise > 0.0, "{to_eye} about {normal}: {mirrored}");
+                    let about = surface.normal * (2.0 * surface.normal.dot(to_eye)) - to_eye;
+                    lifted += usize::from(about.z * side <= 0.0);
+                    for eta in [1.0 / 1.5, 1.5, 1.0] {
+                        let Some(through) = surface.refract(eta) else { continue };
+                        assert!(through.z * side < 0.0, "{to_eye} through {normal}: {through}");
+                        assert!((through.length() - 1.0).abs() < 1e-12);
+                        pressed += usize::from(through.z.abs() < 0.0101);
+                    }
+                }
+            }
+        }
+        assert!(lifted > 500 && flattened > 500 && pressed > 50, "{lifted} {flattened} {pressed}");
+    }
+
+    #[test]
+    fn a_bump_that_bends_little_changes_little() {
+        for to_eye in above() {
+            let tilted = DVec3::new(1e-9, 0.0, 1.0).normalize();
+            let (even, bumped) = (met(DVec3::Z, to_eye, false), met(tilted, to_eye, true));
+            assert!((even.reflect() - bumped.reflect()).length() < 1e-8);
+            for eta in [1.0 / 1.5, 1.0] {
+                let [a, b] = [&even, &bumped].map(|s| s.refract(eta).unwrap());
+                assert!((a - b).length() < 1e-8, "{to_eye}: {a} {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn where_nothing_goes_below_the_bump_reflects_as_a_mirror() {
+        let normal = DVec3::new(0.1, 0.0, 1.0).normalize();
+        let to_eye = DVec3::new(0.3, 0.2, 0.9).normalize();
+        let [bumped, smooth] = [true, false].map(|bumped| met(normal, to_eye, bumped).reflect());
+        assert_eq!(bumped, smooth);
     }
 }

@@ -1,6 +1,7 @@
 //! Ray trees as flat arrays: nodes in preorder, the light that reached them, what shadows crossed.
 
 use super::sink::{Side, Sink};
+use crate::geometry::Tone;
 
 /// What became of a branch of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,6 +104,8 @@ pub struct Node {
     pub slot: u8,
     /// Whether what it shows of itself is to be folded too; otherwise only its lights and branches.
     pub whole: bool,
+    /// Whether a [`Tone`] colours it in place of the slot.
+    pub toned: bool,
     /// What became of its branches.
     pub ends: Ends,
     /// Fresnel's reflectance F, or [`NO_FRESNEL`].
@@ -177,7 +180,8 @@ pub fn entries(crossed: u16) -> usize {
 /// # Invariants ([`TileTrees::validate`])
 /// Nodes of a sample stand in preorder, the reflected branch before the transmitted one; a node's
 /// lights stand in the order of the nodes and of the scene's lights; crossings in the order of the
-/// lights. Written by `grow`, read by `fold` and the inspector; [`KeptTrees`](super::kept::KeptTrees)
+/// lights; tones in the order of the nodes that have one. Every ray that left the scene has a tone of
+/// the sky, in the order in which they were followed, or none has. Written by `grow`, read by `fold` and the inspector; [`KeptTrees`](super::kept::KeptTrees)
 /// are what stays of them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TileTrees {
@@ -193,6 +197,10 @@ pub struct TileTrees {
     pub lights: Vec<LightHit>,
     /// Solids that shadow rays crossed, or witnesses that stopped them.
     pub crossings: Vec<u32>,
+    /// What colours nodes that show no single slot.
+    pub tones: Vec<Tone>,
+    /// What rays saw that left the scene, if the background is not one colour.
+    pub skies: Vec<Tone>,
 }
 
 /// A position in all arrays of a [`TileTrees`].
@@ -206,12 +214,18 @@ pub struct Start {
     pub light: u32,
     /// Index into `crossings`.
     pub crossing: u32,
+    /// Index into `tones`.
+    pub tone: u32,
+    /// Index into `skies`.
+    pub sky: u32,
 }
 
 impl TileTrees {
     /// Empties it and keeps its memory.
     pub fn clear(&mut self) {
-        let TileTrees { blocks, hits, weights, nodes, lights, crossings } = self;
+        let TileTrees { blocks, hits, weights, nodes, lights, crossings, tones, skies } = self;
+        tones.clear();
+        skies.clear();
         blocks.clear();
         hits.clear();
         weights.clear();
@@ -222,24 +236,27 @@ impl TileTrees {
 
     /// Allocated bytes of all arrays.
     pub fn bytes(&self) -> usize {
-        let TileTrees { blocks, hits, weights, nodes, lights, crossings } = self;
+        let TileTrees { blocks, hits, weights, nodes, lights, crossings, tones, skies } = self;
         blocks.capacity() * size_of::<Start>()
             + hits.capacity()
             + weights.capacity() * 4
             + nodes.capacity() * size_of::<Node>()
             + lights.capacity() * size_of::<LightHit>()
             + crossings.capacity() * 4
+            + (tones.capacity() + skies.capacity()) * size_of::<Tone>()
     }
 
     /// Bytes of what is stored, without room for more.
     pub fn used_bytes(&self) -> usize {
-        let TileTrees { blocks, hits, weights, nodes, lights, crossings } = self;
+        let TileTrees { blocks, hits, weights, nodes, lights, crossings, tones, skies } = self;
         size_of_val(&**blocks)
             + hits.len()
             + size_of_val(&**weights)
             + size_of_val(&**nodes)
             + size_of_val(&**lights)
             + size_of_val(&**crossings)
+            + size_of_val(&**tones)
+            + size_of_val(&**skies)
     }
 
     /// A reader that begins at a block.
@@ -260,9 +277,13 @@ impl TileTrees {
             }
             reader.at.sample += 1;
             let mut open = usize::from(hit);
+            let mut missed = usize::from(!hit);
             while open > 0 {
                 let node = reader.node();
                 assert!(node.t > 0.0 && node.t.is_finite(), "distance {}", node.t);
+                if node.toned {
+                    validate_tone(reader.tone());
+                }
                 assert!((node.material as usize) < materials, "material {}", node.material);
                 let ends = node.ends;
                 let known = (0.0..=1.0).contains(&node.fresnel) || node.fresnel == NO_FRESNEL;
@@ -272,6 +293,7 @@ impl TileTrees {
                 let children = [ends.reflected(), ends.transmitted()];
                 open += children.iter().filter(|&&b| b == Branch::Grown).count();
                 open -= 1;
+                missed += children.iter().filter(|&&b| b == Branch::Missed).count();
                 let mut previous = None;
                 for _ in 0..node.lights {
                     let (hit, crossed) = reader.light();
@@ -285,11 +307,23 @@ impl TileTrees {
                     previous = Some(hit.light);
                 }
             }
+            (0..missed).filter_map(|_| reader.sky()).for_each(validate_tone);
         }
         let end = reader.at;
         assert_eq!(end.node as usize, self.nodes.len(), "nodes left over");
         assert_eq!(end.light as usize, self.lights.len(), "lights left over");
         assert_eq!(end.crossing as usize, self.crossings.len(), "crossings left over");
+        assert_eq!(end.tone as usize, self.tones.len(), "tones left over");
+        assert_eq!(end.sky as usize, self.skies.len(), "skies left over");
+    }
+}
+
+fn validate_tone(tone: Tone) {
+    match tone {
+        Tone::Blend { slot: _, share } => assert!((0.0..=1.0).contains(&share), "{tone:?}"),
+        Tone::Texel(texel) => {
+            assert!(texel.0.iter().all(|c| *c >= 0.0 && c.is_finite()), "{tone:?}");
+        }
     }
 }
 
@@ -326,6 +360,29 @@ impl<'a> Reader<'a> {
         &self.trees.nodes[self.at.node as usize - 1]
     }
 
+    /// The tone of the present node, which has one.
+    pub fn tone(&mut self) -> Tone {
+        self.at.tone += 1;
+        self.trees.tones[self.at.tone as usize - 1]
+    }
+
+    /// Whether the background is one colour: then rays that left the scene have no tone.
+    #[inline(always)]
+    pub fn is_sky_even(&self) -> bool {
+        self.trees.skies.is_empty()
+    }
+
+    /// The tone of the next ray that left the scene, in the order in which branches are followed: what
+    /// a node reflects, with all below it, before what it transmits. `None` if the background is one
+    /// colour.
+    pub fn sky(&mut self) -> Option<Tone> {
+        if self.is_sky_even() {
+            return None;
+        }
+        self.at.sky += 1;
+        Some(self.trees.skies[self.at.sky as usize - 1])
+    }
+
     /// The next light of the present node, with the solids crossed, or the one that blocked it.
     #[inline(always)]
     pub fn light(&mut self) -> (&'a LightHit, &'a [u32]) {
@@ -345,6 +402,8 @@ impl Sink for TileTrees {
             node: self.nodes.len() as u32,
             light: self.lights.len() as u32,
             crossing: self.crossings.len() as u32,
+            tone: self.tones.len() as u32,
+            sky: self.skies.len() as u32,
         });
     }
 
@@ -374,6 +433,14 @@ impl Sink for TileTrees {
         *ends = ends.with(side, Branch::Missed);
     }
 
+    fn tone(&mut self, tone: Tone) {
+        self.tones.push(tone);
+    }
+
+    fn sky(&mut self, tone: Tone) {
+        self.skies.push(tone);
+    }
+
     #[inline(always)]
     fn light(&mut self, hit: LightHit, crossed: &[u32]) {
         self.lights.push(hit);
@@ -398,6 +465,7 @@ mod tests {
             lights: 0,
             slot: 0,
             whole: true,
+            toned: false,
             ends: Ends::new(Branch::Grown, Branch::Zero, false),
             fresnel: NO_FRESNEL,
         };

@@ -9,12 +9,16 @@ use super::motion::Moving;
 use super::placement::Placed;
 use super::primitive::{Form, Plane, Shape as OtherShape, Sphere};
 use super::shear::{Corner, corner};
+use super::uv::Frame;
 use crate::progress::{Cancelled, Progress};
 use crate::scene::mesh::Mesh;
 use crate::scene::{Scene, Shape, Solid};
 
 /// Elements handled between two looks at the cancel flag.
 const CHECK_EVERY: usize = 1 << 14;
+
+/// The corners of a triangle as its mesh has them.
+const CORNERS: [usize; 3] = [0, 1, 2];
 
 /// Marks a triangle without smooth normals.
 pub(super) const NO_NORMAL: u32 = u32::MAX;
@@ -80,6 +84,8 @@ pub(super) struct Primitives {
     pub(super) normals: Vec<DVec3>,
     pub(super) moving: Vec<Moving>,
     pub(super) solids: Vec<Compiled>,
+    /// How images lie on each solid.
+    pub(super) frames: Vec<Frame>,
     /// The solid of each primitive.
     pub(super) solid_of: Vec<u32>,
     /// The number of the first primitive: another than 0 for those of a solid that moves.
@@ -157,21 +163,29 @@ impl Primitives {
             + size_of_val(&*self.normals)
             + self.moving.iter().map(Moving::bytes).sum::<usize>()
             + size_of_val(&*self.solids)
+            + size_of_val(&*self.frames)
             + size_of_val(&*self.solid_of)
     }
 
     fn add(&mut self, solid: &Solid, progress: &Progress) -> Result<(), Cancelled> {
         let first = self.number();
         let placed = Placed::new(&solid.placement);
+        let mut order = CORNERS;
         let (item, thin) = match &solid.shape {
             Shape::Sphere { center, radius } => self.sphere(&placed, *center, *radius),
             Shape::Plane { normal, offset } => self.plane(&placed, *normal, *offset),
             Shape::Box { min, max } => self.cuboid(&placed, [*min, *max]),
             Shape::Polygon { points } => self.polygon(&placed, points),
-            Shape::Mesh { file: _, mesh } => self.mesh(&placed, mesh, progress)?,
+            Shape::Mesh { file: _, mesh } => {
+                let (item, thin, turned) = self.mesh(&placed, mesh, progress)?;
+                order = turned;
+                (item, thin)
+            }
             Shape::Knot { turns, tube, segments } => {
                 let mesh = Arc::new(generate::knot(*turns, *tube, *segments, progress)?);
-                self.mesh(&placed, &mesh, progress)?
+                let (item, thin, turned) = self.mesh(&placed, &mesh, progress)?;
+                order = turned;
+                (item, thin)
             }
             Shape::Sphereflake { center, radius, levels } => {
                 self.sphereflake(&placed, generate::sphereflake(*center, *radius, *levels))
@@ -181,6 +195,7 @@ impl Primitives {
         self.solid_of.resize(self.count() + count as usize, self.solids.len() as u32);
         let mesh = item.kind == Kind::Triangle;
         self.solids.push(Compiled { first, count, item, thin, mesh });
+        self.frames.push(Frame::new(solid, placed, order));
         Ok(())
     }
 
@@ -199,6 +214,8 @@ impl Primitives {
         self.solid_of.resize(self.count() + count as usize, self.solids.len() as u32);
         let item = Item { kind: Kind::Moving, index };
         self.solids.push(Compiled { first, count, item, thin, mesh });
+        // Images lie on it as it rests.
+        self.frames.push(Frame::new(solid, Placed::new(&solid.placement), CORNERS));
         Ok(())
     }
 
@@ -273,18 +290,19 @@ impl Primitives {
         (item, true)
     }
 
+    /// Also gives the order in which the corners of its triangles stand.
     fn mesh(
         &mut self,
         placed: &Placed,
         mesh: &Mesh,
         progress: &Progress,
-    ) -> Result<(Item, bool), Cancelled> {
+    ) -> Result<(Item, bool, [usize; 3]), Cancelled> {
         let item = self.next(Kind::Triangle);
         let (first, corner_base) = (self.number(), self.corners.len() as u32);
         let normal_base = self.normals.len() as u32;
         let closed = is_closed(&mesh.triangles, progress)?;
         // A closed mesh that is wound inside out is turned: its inside is what it encloses.
-        let order = if closed && volume(mesh) < 0.0 { [0, 2, 1] } else { [0, 1, 2] };
+        let order = if closed && volume(mesh) < 0.0 { [0, 2, 1] } else { CORNERS };
         self.corners.extend(mesh.positions.iter().map(|p| corner(placed.point(*p))));
         self.normals.extend(mesh.normals.iter().map(|n| exact_normalize(placed.normal(*n))));
         for (i, (triangle, primitive)) in mesh.triangles.iter().zip(first..).enumerate() {
@@ -299,7 +317,7 @@ impl Primitives {
                 None => [NO_NORMAL; 3],
             });
         }
-        Ok((item, !closed))
+        Ok((item, !closed, order))
     }
 }
 
@@ -310,7 +328,7 @@ pub(super) fn exact_normalize(v: DVec3) -> DVec3 {
 }
 
 /// The normal of a polygon, by Newell's sum about its first corner; as long as twice its area.
-fn newell_normal(points: &[DVec3]) -> DVec3 {
+pub(super) fn newell_normal(points: &[DVec3]) -> DVec3 {
     let Some(&origin) = points.first() else { return DVec3::ZERO };
     points.windows(2).map(|pair| (pair[0] - origin).cross(pair[1] - origin)).sum()
 }

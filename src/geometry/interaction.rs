@@ -37,7 +37,9 @@ impl Geometry {
             shading_normal,
             solid: solid_index,
             material,
+            rest,
             slot: checker.map_or(0, |size| checker_slot(rest, size)),
+            bumped: false,
             thin: solid.thin,
             primitive: hit.primitive,
         }

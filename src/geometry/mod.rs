@@ -6,17 +6,21 @@
 //! no epsilon with a length in it: a ray that leaves a surface knows which one ([`Leaving`]).
 
 mod binary;
+mod bump;
 mod compile;
 mod generate;
 mod hierarchy;
 mod interaction;
 mod motion;
+mod noise;
 mod packet;
+mod pattern;
 mod placement;
 mod plan;
 mod primitive;
 mod query;
 mod shear;
+mod sky;
 mod surfaces;
 #[cfg(test)]
 mod testing;
@@ -26,7 +30,10 @@ mod tests;
 mod tests_acne;
 #[cfg(test)]
 mod tests_motion;
+mod texel;
+mod tone;
 mod traverse;
+mod uv;
 
 use std::sync::Arc;
 
@@ -41,6 +48,7 @@ pub use hierarchy::Stack;
 pub use placement::corners;
 use query::{Closest, Shadow};
 use surfaces::Surfaces;
+pub use tone::Tone;
 
 /// A half-line in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,6 +82,8 @@ pub struct Leaving {
 pub struct Interaction {
     /// The hit point, moved onto the surface: coordinates that the surface holds constant are exact.
     pub point: DVec3,
+    /// Where that part of the surface was as the shutter opened: patterns are functions of it.
+    pub rest: DVec3,
     /// Unit, out of the solid; of a surface without thickness, the side it is counter-clockwise from.
     pub geometric_normal: DVec3,
     /// Unit, on the side of the geometric normal: a mesh's smooth normal if it has one.
@@ -82,8 +92,10 @@ pub struct Interaction {
     pub solid: u32,
     /// Index into `Scene::materials`.
     pub material: u16,
-    /// Slot of the material's paint.
+    /// Slot of the material's paint, if it shows whole slots.
     pub slot: u8,
+    /// Whether the shading normal was bent by a bump.
+    pub bumped: bool,
     /// Whether the surface has no thickness and does not refract.
     pub thin: bool,
     /// The primitive's number.
@@ -160,6 +172,39 @@ impl Geometry {
     pub fn spawn(&self, at: &Interaction, direction: DVec3) -> (Ray, Leaving) {
         let inside = direction.dot(at.geometric_normal) < 0.0;
         (Ray { origin: at.point, direction }, Leaving { primitive: at.primitive, inside })
+    }
+
+    /// Whether colours and bumps are no more than a checker's anywhere: then [`Geometry::finish`] and
+    /// [`Geometry::sky`] have nothing to do.
+    #[inline(always)]
+    pub fn is_plain(&self) -> bool {
+        self.surfaces.is_plain()
+    }
+
+    /// Bends the shading normal at a hit by its material's bump, and gives the tone of its colour,
+    /// `None` if it is that of its slot. A piece of the surface `footprint` wide is looked at.
+    pub fn finish(&self, stack: &Stack, at: &mut Interaction, footprint: f64) -> Option<Tone> {
+        let look = self.surfaces.look(at.material);
+        let moving = self.primitives.moving(at.solid);
+        let uv = || match moving {
+            None => self.primitives.uv(at.solid, at),
+            Some((index, moving)) => moving.uv(index, &stack.moment, at),
+        };
+        let mut gradient = look.relief.gradient(at.rest, footprint, uv);
+        let tone = look.pattern.tone(at.rest, footprint, uv);
+        if let Some((index, moving)) = moving {
+            gradient = moving.turned(index, &stack.moment, gradient);
+        }
+        if let Some(normal) = bump::bent(at.shading_normal, gradient) {
+            (at.shading_normal, at.bumped) = (normal, true);
+        }
+        tone
+    }
+
+    /// The tone of the background in a unit direction, of which a cone `angle` radians wide is looked
+    /// at; `None` of one colour.
+    pub fn sky(&self, direction: DVec3, angle: f64) -> Option<Tone> {
+        self.surfaces.sky.tone(direction, angle)
     }
 
     /// The solid that a primitive belongs to: an index into `Scene::solids`.

@@ -13,7 +13,8 @@ use super::placement::rotation;
 use super::query::Query;
 use super::surfaces::Surfaces;
 use super::traverse::Walk;
-use super::{Geometry, Hit, Ray};
+use super::uv::Uv;
+use super::{Geometry, Hit, Interaction, Ray};
 use crate::progress::{Cancelled, Progress};
 use crate::scene::motion::Motion;
 use crate::scene::{Placement, Solid};
@@ -139,6 +140,22 @@ impl Moving {
         let resting = RefCell::default();
         let within = Walk::new(&ray, walk.leaving, pose.slack(walk.ray), &resting);
         dispatch!(level, simd => self.rest.descend(simd, entries, &within, query));
+    }
+
+    /// u and v of a point of its surface, with their gradients as the shutter opened.
+    pub(super) fn uv(&self, index: u32, moment: &RefCell<Moment>, at: &Interaction) -> Uv {
+        let pose = self.pose(index, &mut moment.borrow_mut());
+        let back = pose.turn.transpose();
+        let point = back * (at.point - pose.origin);
+        let geometric_normal = back * at.geometric_normal;
+        let uv = self.rest.primitives.uv(0, &Interaction { point, geometric_normal, ..*at });
+        Uv { gradients: uv.gradients.map(|gradient| self.opening.turn * gradient), ..uv }
+    }
+
+    /// A vector along its surface as the shutter opened, turned as it is at the moment.
+    pub(super) fn turned(&self, index: u32, moment: &RefCell<Moment>, v: DVec3) -> DVec3 {
+        let pose = self.pose(index, &mut moment.borrow_mut());
+        pose.turn * (self.opening.turn.transpose() * v)
     }
 
     /// Its surface at a hit in the world, and the point at which that part of it was as the shutter

@@ -52,6 +52,21 @@ impl Placed {
         self.linear * object + self.translation
     }
 
+    /// A point of the world in object space.
+    pub(super) fn point_to_object(&self, world: DVec3) -> DVec3 {
+        self.inverse * (world - self.translation)
+    }
+
+    /// A difference of two points of the world in object space.
+    pub(super) fn vector_to_object(&self, world: DVec3) -> DVec3 {
+        self.inverse * world
+    }
+
+    /// A surface normal in object space, not of unit length.
+    pub(super) fn normal_to_object(&self, world: DVec3) -> DVec3 {
+        self.linear.transpose() * world
+    }
+
     /// A surface normal of the object in the world, not of unit length.
     pub(super) fn normal(&self, object: DVec3) -> DVec3 {
         self.inverse.transpose() * object

@@ -49,6 +49,7 @@ impl Random {
 
 pub(super) fn scene(solids: Vec<Solid>) -> Scene {
     let material = |name: &str, paint| Material {
+        bump: crate::scene::Bump::None,
         name: name.into(),
         paint,
         kloc: Rgb::WHITE,
@@ -79,7 +80,7 @@ pub(super) fn scene(solids: Vec<Solid>) -> Scene {
             lens: Lens::Perspective { fov_degrees: 40.0 },
             ..Camera::default()
         },
-        background: Background { color: Rgb::BLACK },
+        background: Background::Color(Rgb::BLACK),
         trace: Trace { samples: 1, depth: 1, cutoff: 0.0, ..Trace::default() },
         lights: vec![],
         materials: vec![

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::model::{Model, Peak};
 use super::{
-    Background, Camera, Light, LightPlace, Material, Paint, Picture, Placement, Scene, Shape,
+    Background, Bump, Camera, Light, LightPlace, Material, Paint, Picture, Placement, Scene, Shape,
     Solid, Trace,
 };
 
@@ -26,6 +26,8 @@ pub struct Change {
     /// Materials of the old scene whose surfaces are to be read again, in the trees that show them
     /// or pass light through them.
     pub nodes: Vec<u16>,
+    /// Whether what rays that leave the scene see is to be read again.
+    pub sky: bool,
     /// Whether all surfaces are to be read again because of a light: it is new, or elsewhere.
     pub shadows: bool,
     /// Whether reading again may cast rays.
@@ -61,8 +63,7 @@ impl Change {
         change.camera(camera, &new.camera);
         // A shutter before which nothing moves may stay open as long as it will.
         change.form(old.shutter_time() != new.shutter_time(), "camera.shutter");
-        let Background { color } = background;
-        change.term(*color != new.background.color);
+        change.background(background, &new.background);
         change.trace(trace, &new.trace);
         // What is cut off by geometry is not in the terms.
         let other_cutoff = trace.cutoff != new.trace.cutoff;
@@ -197,6 +198,33 @@ impl Change {
         self.ray(focus, "camera.focus");
     }
 
+    /// Where its colours fall follows from the directions of the kept rays.
+    fn background(&mut self, old: &Background, new: &Background) {
+        use Background::{Color, Gradient, Image};
+        let mut moved = false;
+        match (old, new) {
+            (Color(a), Color(b)) => self.term(a != b),
+            (
+                Gradient { below, level, above, up },
+                Gradient { below: below2, level: level2, above: above2, up: up2 },
+            ) => {
+                self.term(below != below2 || level != level2 || above != above2);
+                moved = up != up2;
+            }
+            (
+                Image { image, tint, turn_degrees },
+                Image { image: image2, tint: tint2, turn_degrees: turn2 },
+            ) => {
+                self.term(tint != tint2);
+                moved = turn_degrees != turn2 || image.image != image2.image;
+            }
+            _ => moved = true,
+        }
+        self.part(moved, "the background");
+        self.sky |= moved;
+        self.surfaces |= moved;
+    }
+
     /// Depth and cut-off are limits of the rule of liveness: lowering what is seen costs nothing,
     /// raising it meets the frontier.
     fn trace(&mut self, old: &Trace, new: &Trace) {
@@ -243,6 +271,7 @@ impl Change {
         let Material {
             name: _,
             paint,
+            bump,
             kloc,
             ambient,
             diffuse,
@@ -261,6 +290,7 @@ impl Change {
             translucency: _,
         } = old;
         self.paint(before, paint, &new.paint);
+        self.bump(before, bump, new);
         let local = *kloc != new.kloc || *ambient != new.ambient || *diffuse != new.diffuse;
         let gloss = *specular != new.specular || *metallic != new.metallic;
         self.term(local || gloss || *emission != new.emission);
@@ -283,19 +313,66 @@ impl Change {
         self.lobes |= old.lobes() != new.lobes();
     }
 
+    /// Where colours fall is a function of the kept points.
     fn paint(&mut self, before: u16, old: &Paint, new: &Paint) {
-        match (old, new) {
-            (Paint::Solid(a), Paint::Solid(b)) => self.term(a != b),
-            (Paint::Checker { a, b, size }, Paint::Checker { a: a2, b: b2, size: size2 }) => {
+        use Paint::{Checker, Gradient, Image, Marble, Solid, Wood};
+        let moved = match (old, new) {
+            (Solid(a), Solid(b)) => {
+                self.term(a != b);
+                None
+            }
+            (Checker { a, b, size }, Checker { a: a2, b: b2, size: size2 }) => {
                 self.term(a != a2 || b != b2);
-                self.node(size != size2, before, "texture.checker.size");
-                self.surfaces |= size != size2;
+                (size != size2).then_some("texture.checker.size")
             }
-            _ => {
-                self.node(true, before, "the kind of texture");
-                self.surfaces = true;
+            (Gradient { a, b, from, to }, Gradient { a: a2, b: b2, from: from2, to: to2 }) => {
+                self.term(a != a2 || b != b2);
+                (from != from2 || to != to2).then_some("texture.gradient")
             }
+            (Marble { a, b, size, direction, turbulence }, Marble { a: a2, b: b2, .. }) => {
+                self.term(a != a2 || b != b2);
+                let moved = *new
+                    != Marble {
+                        a: *a2,
+                        b: *b2,
+                        size: *size,
+                        direction: *direction,
+                        turbulence: *turbulence,
+                    };
+                moved.then_some("texture.marble")
+            }
+            (Wood { a, b, size, center, axis, turbulence }, Wood { a: a2, b: b2, .. }) => {
+                self.term(a != a2 || b != b2);
+                let moved = *new
+                    != Wood {
+                        a: *a2,
+                        b: *b2,
+                        size: *size,
+                        center: *center,
+                        axis: *axis,
+                        turbulence: *turbulence,
+                    };
+                moved.then_some("texture.wood")
+            }
+            (Image { image, tint, size }, Image { image: image2, tint: tint2, size: size2 }) => {
+                self.term(tint != tint2);
+                let moved = size != size2 || image.image != image2.image;
+                moved.then_some("texture.image")
+            }
+            _ => Some("the kind of texture"),
+        };
+        if let Some(what) = moved {
+            self.node(true, before, what);
+            self.surfaces = true;
         }
+    }
+
+    /// A bump bends the shading normal: of what neither reflects nor transmits no ray goes on by it.
+    fn bump(&mut self, before: u16, old: &Bump, new: &Material) {
+        let differs = !old.bends_like(&new.bump);
+        self.node(differs, before, "bump");
+        self.surfaces |= differs;
+        self.casts |= differs && (!new.reflect.is_black() || !new.transmit.is_black());
     }
 
     /// Compares what a solid is made of.
@@ -362,6 +439,7 @@ impl Material {
         let Material {
             name: _,
             paint: _,
+            bump,
             kloc: _,
             ambient: _,
             diffuse: _,
@@ -382,8 +460,10 @@ impl Material {
         let path = (reflect, transmit, filter, ior);
         let lobes = [*gloss, *translucency];
         let hall = |model| model == Model::Hall;
+        let goes_on = !reflect.is_black() || !transmit.is_black();
         path == (&other.reflect, &other.transmit, &other.filter, &other.ior)
             && lobes == other.lobes()
+            && (!goes_on || bump.bends_like(&other.bump))
             && self.weighs_branches() == other.weighs_branches()
             && hall(*model) == hall(other.model)
     }

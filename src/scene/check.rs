@@ -11,8 +11,8 @@ use super::slot::Slot;
 use super::toml_text::number;
 use super::value::Names;
 use super::{
-    Area, Camera, Lens, Light, LightPlace, MAX_KNOT_FACES, MAX_NAMED, MAX_PIXELS, Picture, Scene,
-    Shape, Solid,
+    Area, Background, Camera, Lens, Light, LightPlace, MAX_KNOT_FACES, MAX_NAMED, MAX_PIXELS,
+    Material, Paint, Picture, Scene, Shape, Solid,
 };
 
 /// Sine of the smallest angle between the view and `up`.
@@ -60,8 +60,10 @@ pub fn relations(scene: &Scene) -> Vec<Flaw> {
     flaws.extend(twice("solids", scene.solids.iter().map(|solid| &solid.name)));
     flaws.extend(camera(&scene.camera));
     flaws.extend(picture(&scene.picture));
+    flaws.extend(background(&scene.background));
     flaws.extend(scene.lights.iter().filter_map(light));
     flaws.extend(too_many_rays(scene));
+    flaws.extend(scene.materials.iter().filter_map(material));
     flaws.extend(scene.solids.iter().filter_map(solid));
     flaws
 }
@@ -106,6 +108,32 @@ fn picture(picture: &Picture) -> Option<Flaw> {
         format!("a picture of {width} × {height} pixels is too large: at most {MAX_PIXELS} pixels");
     let help = "for example `size = [16384, 16384]`";
     (width * height > MAX_PIXELS).then(|| Flaw::new(&["picture", "size"], message, help))
+}
+
+fn background(background: &Background) -> Option<Flaw> {
+    let Background::Gradient { up, .. } = background else { return None };
+    let message = "`up` is zero, which is no direction";
+    let help = "give the direction of `above`, for example `up = [0, 0, 1]`";
+    unit(*up).is_none().then(|| Flaw::new(&["background", "gradient", "up"], message, help))
+}
+
+fn material(material: &Material) -> Option<Flaw> {
+    let (key, message, help) = match &material.paint {
+        Paint::Gradient { from, to, .. } if unit(*to - *from).is_none() => {
+            ("to", "`to` is where `from` is: the gradient has no length", "move one of the two")
+        }
+        Paint::Marble { direction, .. } if unit(*direction).is_none() => {
+            let help = "give the direction across the veins, for example `direction = [1, 0, 0]`";
+            ("direction", "`direction` is zero, which is no direction", help)
+        }
+        Paint::Wood { axis, .. } if unit(*axis).is_none() => {
+            let help = "give the direction of the trunk, for example `axis = [0, 0, 1]`";
+            ("axis", "`axis` is zero, which is no direction", help)
+        }
+        _ => return None,
+    };
+    let pattern = fields::texture_key(&material.paint);
+    Some(Flaw::new(&["materials", &material.name, "texture", pattern, key], message, help))
 }
 
 fn light(light: &Light) -> Option<Flaw> {
@@ -280,8 +308,8 @@ mod tests {
 
     #[test]
     fn validate_finds_ranges_relations_and_dangling_materials() {
-        let mut scene = Scene::default();
-        scene.background.color = Rgb([0.0, -1.0, 0.0]);
+        let background = Background::Color(Rgb([0.0, -1.0, 0.0]));
+        let mut scene = Scene { background, ..Scene::default() };
         scene.camera.eye = scene.camera.target;
         scene.solids.push(Solid::new("ball", Shape::named("sphere"), 3));
         scene.lights = vec![Light::new("a"), Light::new("b"), Light::new("a")];

@@ -10,7 +10,9 @@ use super::mesh::Mesh;
 use super::model::Model;
 use super::motion::Motion;
 use super::refine::Refine;
-use super::{Background, Camera, Lens, Material, Paint, Picture, Scene, Shape, Solid, Trace};
+use super::{
+    Background, Bump, Camera, ImageFile, Lens, Material, Paint, Picture, Scene, Shape, Solid, Trace,
+};
 use crate::color::Rgb;
 
 impl Default for Scene {
@@ -50,7 +52,7 @@ impl Default for Camera {
 
 impl Default for Background {
     fn default() -> Background {
-        Background { color: Rgb::BLACK }
+        Background::Color(Rgb::BLACK)
     }
 }
 
@@ -73,6 +75,7 @@ impl Material {
         Material {
             name: name.into(),
             paint: Paint::Solid(Rgb::WHITE),
+            bump: Bump::None,
             kloc: Rgb::WHITE,
             ambient: Rgb::grey(0.1),
             diffuse: Rgb::grey(0.7),
@@ -112,11 +115,55 @@ impl Lens {
 }
 
 impl Paint {
-    /// The paint whose key in the scene file is `key`; one colour for any other word.
+    /// The paint whose key in the scene file, or in its `texture`, is `key`; one colour for any other
+    /// word.
     pub fn named(key: &str) -> Paint {
+        let (a, b, size) = (Rgb::WHITE, Rgb::BLACK, 1.0);
         match key {
-            "texture" => Paint::Checker { a: Rgb::WHITE, b: Rgb::BLACK, size: 1.0 },
+            "texture" | "checker" => Paint::Checker { a, b, size },
+            "gradient" => Paint::Gradient { a, b, from: DVec3::ZERO, to: DVec3::Z },
+            "marble" => {
+                let direction = DVec3::new(1.0, 0.5, 0.25);
+                Paint::Marble { a, b, size, direction, turbulence: 1.0 }
+            }
+            "wood" => {
+                let (center, axis) = (DVec3::ZERO, DVec3::Z);
+                Paint::Wood { a, b, size: 0.1, center, axis, turbulence: 0.5 }
+            }
+            "image" => Paint::Image { image: ImageFile::default(), tint: Rgb::WHITE, size },
             _ => Paint::Solid(Rgb::WHITE),
+        }
+    }
+}
+
+impl Bump {
+    /// The bump whose key in the scene file is `key`; none for any other word.
+    pub fn named(key: &str) -> Bump {
+        match key {
+            "noise" => Bump::Noise { height: 0.02, scale: 0.2 },
+            "waves" => Bump::Waves { height: 0.02, scale: 0.3, center: DVec3::ZERO },
+            "image" => Bump::Image { image: ImageFile::default(), height: 0.02, size: 1.0 },
+            _ => Bump::None,
+        }
+    }
+}
+
+impl Background {
+    /// The background whose key in the scene file is `key`; one colour for any other word.
+    pub fn named(key: &str) -> Background {
+        match key {
+            "gradient" => Background::Gradient {
+                below: Rgb([0.12, 0.11, 0.1]),
+                level: Rgb([0.75, 0.82, 0.9]),
+                above: Rgb([0.12, 0.3, 0.7]),
+                up: DVec3::Z,
+            },
+            "image" => Background::Image {
+                image: ImageFile::default(),
+                tint: Rgb::WHITE,
+                turn_degrees: 0.0,
+            },
+            _ => Background::default(),
         }
     }
 }

@@ -3,14 +3,14 @@
 //! A picture is a sum of *geometry × product of factors*. A factor is a function of the parameters
 //! of one material, one texture slot or one light, and nothing else in a picture depends on them.
 
-use super::{Light, Material, Paint, Scene};
+use super::{Background, Light, Material, Paint, Scene};
 use crate::color::Rgb;
 
 /// What a factor means. The order is the order in which terms are numbered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Kind {
-    /// Colour of the background, seen where a ray leaves the scene.
+    /// Colour of a slot of the background, seen where a ray leaves the scene.
     Background,
     /// `reflect` of a material, for the mirror ray.
     Reflect,
@@ -112,13 +112,15 @@ impl Factor {
     /// Text such as `diffuse(tiles.b)`, for people.
     pub fn describe(self, scene: &Scene) -> String {
         let material = || scene.materials[self.index()].name.as_str();
-        let slot = || match (&scene.materials[self.index()].paint, self.slot()) {
-            (Paint::Solid(_), _) => String::new(),
-            (Paint::Checker { .. }, 0) => ".a".into(),
-            (Paint::Checker { .. }, _) => ".b".into(),
+        let dotted = |name: &str| match name {
+            "" => String::new(),
+            name => format!(".{name}"),
         };
+        let slot = || dotted(scene.materials[self.index()].paint.slot_name(self.slot()));
         match self.kind() {
-            Kind::Background => "background".into(),
+            Kind::Background => {
+                format!("background{}", dotted(scene.background.slot_name(self.slot())))
+            }
             Kind::Reflect => format!("reflect({})", material()),
             Kind::Transmit => format!("transmit({})", material()),
             Kind::TotalReflect => format!("tir({})", material()),
@@ -138,12 +140,14 @@ const LEAST_GEOMETRIC: f32 = 1.0 / (1u64 << 60) as f32;
 
 /// Slots that a paint may have.
 const SLOTS: usize = 2;
+/// Slots that a background may have.
+const SKY_SLOTS: usize = 3;
 
 /// The value of every factor of a scene. Made from a scene's parameters, read by tracing (which
 /// branches live) and by shading (what they show).
 #[derive(Clone, Debug, PartialEq)]
 pub struct FactorValues {
-    background: Rgb,
+    background: [Rgb; SKY_SLOTS],
     reflect: Vec<Rgb>,
     transmit: Vec<Rgb>,
     total_reflect: Vec<Rgb>,
@@ -160,7 +164,7 @@ impl FactorValues {
     pub fn new(scene: &Scene) -> FactorValues {
         let materials = || scene.materials.iter();
         FactorValues {
-            background: scene.background.color,
+            background: sky_colors(&scene.background),
             reflect: materials().map(|m| m.reflect).collect(),
             transmit: materials().map(|m| m.transmit * m.filter).collect(),
             total_reflect: materials()
@@ -168,13 +172,24 @@ impl FactorValues {
                 .collect(),
             ambient: materials()
                 .map(|m| {
-                    let glow = |o| m.kloc * (m.emission + m.ambient * o * scene.ambient_light);
-                    slot_colors(m).map(glow)
+                    let shown = |o| m.ambient * o * scene.ambient_light;
+                    let glow = |o| m.emission + shown(o);
+                    let slots = of_slots(m, glow, [&shown, &|_| m.emission]);
+                    slots.map(|light| m.kloc * light)
                 })
                 .collect(),
-            diffuse: materials().map(|m| slot_colors(m).map(|o| m.kloc * m.diffuse * o)).collect(),
+            diffuse: materials()
+                .map(|m| {
+                    let matt = |o| m.kloc * m.diffuse * o;
+                    of_slots(m, matt, [&matt, &|_| Rgb::BLACK])
+                })
+                .collect(),
             specular: materials()
-                .map(|m| slot_colors(m).map(|o| m.kloc * m.specular * tint(o, m.metallic)))
+                .map(|m| {
+                    let tinted = |o| tint(o, m.metallic);
+                    let (metal, white) = (|o| o * m.metallic, |_| Rgb::grey(1.0 - m.metallic));
+                    of_slots(m, tinted, [&metal, &white]).map(|tint| m.kloc * m.specular * tint)
+                })
                 .collect(),
             through: materials().map(|m| m.kloc * m.specular * (m.transmit * m.filter)).collect(),
             light: scene.lights.iter().map(light_value).collect(),
@@ -199,7 +214,7 @@ impl FactorValues {
     pub fn value(&self, factor: Factor) -> Rgb {
         let (i, slot) = (factor.index(), factor.slot());
         match factor.kind() {
-            Kind::Background => self.background,
+            Kind::Background => self.background[slot],
             Kind::Reflect => self.reflect[i],
             Kind::Transmit | Kind::Shadow => self.transmit[i],
             Kind::TotalReflect => self.total_reflect[i],
@@ -283,10 +298,30 @@ pub enum End {
     Astray,
 }
 
-fn slot_colors(material: &Material) -> [Rgb; SLOTS] {
-    match material.paint {
-        Paint::Solid(color) => [color; SLOTS],
-        Paint::Checker { a, b, size: _ } => [a, b],
+/// What the colour of each slot makes of a surface. `whole` is for a colour that the slot knows. Of an
+/// image it knows the tint alone: the first part of `split` is what texels multiply, the second what
+/// they do not.
+fn of_slots(
+    material: &Material,
+    whole: impl Fn(Rgb) -> Rgb,
+    split: [&dyn Fn(Rgb) -> Rgb; SLOTS],
+) -> [Rgb; SLOTS] {
+    match &material.paint {
+        Paint::Solid(color) => [whole(*color); SLOTS],
+        Paint::Checker { a, b, size: _ } => [whole(*a), whole(*b)],
+        Paint::Gradient { a, b, .. } | Paint::Marble { a, b, .. } | Paint::Wood { a, b, .. } => {
+            [whole(*a), whole(*b)]
+        }
+        Paint::Image { tint, image: _, size: _ } => split.map(|part| part(*tint)),
+    }
+}
+
+fn sky_colors(background: &Background) -> [Rgb; SKY_SLOTS] {
+    match background {
+        Background::Color(color) => [*color, Rgb::BLACK, Rgb::BLACK],
+        Background::Gradient { below, level, above, up: _ } => [*below, *level, *above],
+        // The second only says where the image is seen.
+        Background::Image { tint, .. } => [*tint, Rgb::BLACK, Rgb::BLACK],
     }
 }
 

@@ -5,8 +5,8 @@ use super::motion::Motion;
 use super::range::Range;
 use super::slot::Slot;
 use super::{
-    Area, Background, Camera, Lens, Light, LightPlace, Material, Paint, Picture, Placement, Scene,
-    Shape, Solid, Trace,
+    Area, Background, Bump, Camera, Lens, Light, LightPlace, Material, Paint, Picture, Placement,
+    Scene, Shape, Solid, Trace,
 };
 
 /// Light, colours, and the coefficients of the local shading.
@@ -19,6 +19,8 @@ pub const DEPTH: Range = Range::closed(0.0, 64.0);
 pub const SHARE: Range = Range::closed(0.0, 1.0);
 /// Slope of the facets of a rough surface.
 pub const ROUGHNESS: Range = Range::closed(0.02, 1.0);
+/// How far a pattern is folded, in units of its size.
+pub const TURBULENCE: Range = Range::closed(0.0, 100.0);
 /// Positions, directions and angles.
 pub const COORDINATE: Range = Range::closed(-1e12, 1e12);
 /// Radii, sides and scales.
@@ -40,7 +42,11 @@ pub const AREAS: &[&str] = &["rectangle", "disc", "sphere"];
 /// Keys of [`Paint`].
 pub const PAINTS: &[&str] = &["color", "texture"];
 /// Keys of the patterns in a `texture`.
-pub const TEXTURES: &[&str] = &["checker"];
+pub const TEXTURES: &[&str] = &["checker", "gradient", "marble", "wood", "image"];
+/// Keys of [`Background`].
+pub const BACKGROUNDS: &[&str] = &["color", "gradient", "image"];
+/// Keys of the functions in a `bump`.
+pub const BUMPS: &[&str] = &["noise", "waves", "image"];
 /// Keys of [`Shape`].
 pub const SHAPES: &[&str] = &["sphere", "plane", "box", "polygon", "mesh", "knot", "sphereflake"];
 
@@ -140,8 +146,22 @@ pub fn trace(trace: &mut Trace, v: &mut dyn Visit) {
 
 /// Visits `[background]`.
 pub fn background(background: &mut Background, v: &mut dyn Visit) {
-    let Background { color } = background;
-    v.leaf("color", Need::Optional, Slot::Coefficient(color, COEFFICIENT));
+    let need = Need::EitherOf(BACKGROUNDS);
+    let required = Need::Required;
+    match background {
+        Background::Color(color) => v.leaf("color", need, Slot::Coefficient(color, COEFFICIENT)),
+        Background::Gradient { below, level, above, up } => v.group("gradient", need, &mut |v| {
+            v.leaf("below", required, Slot::Coefficient(below, COEFFICIENT));
+            v.leaf("level", required, Slot::Coefficient(level, COEFFICIENT));
+            v.leaf("above", required, Slot::Coefficient(above, COEFFICIENT));
+            v.leaf("up", Need::Optional, Slot::Vector(up, COORDINATE));
+        }),
+        Background::Image { image, tint, turn_degrees } => v.group("image", need, &mut |v| {
+            v.leaf("file", required, Slot::Image(image));
+            v.leaf("tint", Need::Optional, Slot::Coefficient(tint, COEFFICIENT));
+            v.leaf("turn_degrees", Need::Optional, Slot::Number(turn_degrees, COORDINATE));
+        }),
+    }
 }
 
 /// Visits `[lights.NAME]`.
@@ -208,6 +228,7 @@ pub fn material(material: &mut Material, v: &mut dyn Visit) {
     let Material {
         name: _,
         paint,
+        bump,
         kloc,
         ambient,
         diffuse,
@@ -242,6 +263,7 @@ pub fn material(material: &mut Material, v: &mut dyn Visit) {
     v.leaf("fresnel", Need::Optional, Slot::Flag(fresnel));
     v.leaf("gloss", Need::Optional, Slot::Single(gloss, EXPONENT));
     v.leaf("translucency", Need::Optional, Slot::Single(translucency, EXPONENT));
+    self::bump(bump, v);
 }
 
 /// Visits `color` or `texture`.
@@ -249,13 +271,102 @@ pub fn paint(paint: &mut Paint, v: &mut dyn Visit) {
     let need = Need::EitherOf(PAINTS);
     match paint {
         Paint::Solid(color) => v.leaf("color", need, Slot::Coefficient(color, COEFFICIENT)),
-        Paint::Checker { a, b, size } => v.group("texture", need, &mut |v| {
-            v.group("checker", Need::OneOf(TEXTURES), &mut |v| {
-                v.leaf("a", Need::Required, Slot::Coefficient(a, COEFFICIENT));
-                v.leaf("b", Need::Required, Slot::Coefficient(b, COEFFICIENT));
-                v.leaf("size", Need::Required, Slot::Number(size, LENGTH));
-            });
+        _ => v.group("texture", need, &mut |v| {
+            v.group(texture_key(paint), Need::OneOf(TEXTURES), &mut |v| texture(paint, v));
         }),
+    }
+}
+
+/// The key of a paint in its `texture`; of one colour, where there is none, `color`.
+pub fn texture_key(paint: &Paint) -> &'static str {
+    match paint {
+        Paint::Solid(_) => "color",
+        Paint::Checker { .. } => "checker",
+        Paint::Gradient { .. } => "gradient",
+        Paint::Marble { .. } => "marble",
+        Paint::Wood { .. } => "wood",
+        Paint::Image { .. } => "image",
+    }
+}
+
+/// Visits what stands in the table of a pattern.
+pub fn texture(paint: &mut Paint, v: &mut dyn Visit) {
+    let (need, optional) = (Need::Required, Need::Optional);
+    let colors = |a, b, v: &mut dyn Visit| {
+        v.leaf("a", need, Slot::Coefficient(a, COEFFICIENT));
+        v.leaf("b", need, Slot::Coefficient(b, COEFFICIENT));
+    };
+    match paint {
+        Paint::Solid(_) => {}
+        Paint::Checker { a, b, size } => {
+            colors(a, b, v);
+            v.leaf("size", need, Slot::Number(size, LENGTH));
+        }
+        Paint::Gradient { a, b, from, to } => {
+            colors(a, b, v);
+            v.leaf("from", need, Slot::Vector(from, COORDINATE));
+            v.leaf("to", need, Slot::Vector(to, COORDINATE));
+        }
+        Paint::Marble { a, b, size, direction, turbulence } => {
+            colors(a, b, v);
+            v.leaf("size", need, Slot::Number(size, LENGTH));
+            v.leaf("direction", optional, Slot::Vector(direction, COORDINATE));
+            v.leaf("turbulence", optional, Slot::Number(turbulence, TURBULENCE));
+        }
+        Paint::Wood { a, b, size, center, axis, turbulence } => {
+            colors(a, b, v);
+            v.leaf("size", need, Slot::Number(size, LENGTH));
+            v.leaf("center", optional, Slot::Vector(center, COORDINATE));
+            v.leaf("axis", optional, Slot::Vector(axis, COORDINATE));
+            v.leaf("turbulence", optional, Slot::Number(turbulence, TURBULENCE));
+        }
+        Paint::Image { image, tint, size } => {
+            v.leaf("file", need, Slot::Image(image));
+            v.leaf("tint", optional, Slot::Coefficient(tint, COEFFICIENT));
+            v.leaf("size", optional, Slot::Number(size, LENGTH));
+        }
+    }
+}
+
+/// The key of a bump; empty of none.
+pub fn bump_key(bump: &Bump) -> &'static str {
+    match bump {
+        Bump::None => "",
+        Bump::Noise { .. } => "noise",
+        Bump::Waves { .. } => "waves",
+        Bump::Image { .. } => "image",
+    }
+}
+
+/// Visits `bump`; its table is empty where there is none.
+pub fn bump(bump: &mut Bump, v: &mut dyn Visit) {
+    v.group("bump", Need::Optional, &mut |v| {
+        if *bump != Bump::None {
+            let need = Need::OneOf(BUMPS);
+            v.group(bump_key(bump), need, &mut |v| unevenness(bump, v));
+        }
+    });
+}
+
+/// Visits what stands in the table of a bump's function.
+fn unevenness(bump: &mut Bump, v: &mut dyn Visit) {
+    let (need, optional) = (Need::Required, Need::Optional);
+    match bump {
+        Bump::None => {}
+        Bump::Noise { height, scale } => {
+            v.leaf("height", need, Slot::Number(height, COORDINATE));
+            v.leaf("scale", need, Slot::Number(scale, LENGTH));
+        }
+        Bump::Waves { height, scale, center } => {
+            v.leaf("height", need, Slot::Number(height, COORDINATE));
+            v.leaf("scale", need, Slot::Number(scale, LENGTH));
+            v.leaf("center", optional, Slot::Vector(center, COORDINATE));
+        }
+        Bump::Image { image, height, size } => {
+            v.leaf("file", need, Slot::Image(image));
+            v.leaf("height", need, Slot::Number(height, COORDINATE));
+            v.leaf("size", optional, Slot::Number(size, LENGTH));
+        }
     }
 }
 
@@ -344,6 +455,17 @@ mod tests {
         };
         for key in PAINTS {
             let keys = first_key(&mut |v| paint(&mut Paint::named(key), v));
+            assert_eq!(keys, [*key]);
+        }
+        for key in TEXTURES {
+            assert_eq!(texture_key(&Paint::named(key)), *key);
+        }
+        for key in BUMPS {
+            assert_eq!(bump_key(&Bump::named(key)), *key);
+        }
+        assert_eq!(first_key(&mut |v| bump(&mut Bump::None, v)), ["bump"]);
+        for key in BACKGROUNDS {
+            let keys = first_key(&mut |v| background(&mut Background::named(key), v));
             assert_eq!(keys, [*key]);
         }
         for key in LENSES {

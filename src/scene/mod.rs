@@ -18,6 +18,7 @@ pub mod mesh;
 pub mod model;
 pub mod motion;
 mod obj;
+mod paint;
 pub mod path;
 pub mod problem;
 pub mod range;
@@ -25,6 +26,7 @@ pub mod read;
 mod reader;
 pub mod refine;
 pub mod slot;
+pub mod texture;
 pub(crate) mod toml_text;
 pub mod value;
 pub mod write;
@@ -39,6 +41,7 @@ pub use light::{Area, Light, LightPlace};
 use mesh::Mesh;
 use model::Model;
 use motion::Motion;
+pub use paint::{Background, Bump, ImageFile, Paint};
 use refine::Refine;
 
 /// A whole scene. Lengths are in one unit of the user's choice, colours linear Rec. 709.
@@ -63,6 +66,50 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Solids and surfaces, in file order.
     pub solids: Vec<Solid>,
+}
+
+impl Scene {
+    /// The image files that it reads: the background's, then every material's colours and bump.
+    pub fn images(&self) -> impl Iterator<Item = &ImageFile> {
+        let sky = match &self.background {
+            Background::Image { image, .. } => Some(image),
+            Background::Color(_) | Background::Gradient { .. } => None,
+        };
+        fn of(material: &Material) -> impl Iterator<Item = &ImageFile> {
+            let paint = match &material.paint {
+                Paint::Image { image, .. } => Some(image),
+                _ => None,
+            };
+            [paint, material.bump.image()].into_iter().flatten()
+        }
+        sky.into_iter().chain(self.materials.iter().flat_map(of))
+    }
+
+    /// Calls `each` with the name of every mesh and image file.
+    pub fn each_file(&mut self, each: &mut dyn FnMut(&mut String)) {
+        for solid in &mut self.solids {
+            if let Shape::Mesh { file, mesh: _ } = &mut solid.shape {
+                each(file);
+            }
+        }
+        self.images_mut().for_each(|image| each(&mut image.file));
+    }
+
+    /// The image files, to be changed.
+    fn images_mut(&mut self) -> impl Iterator<Item = &mut ImageFile> {
+        let sky = match &mut self.background {
+            Background::Image { image, .. } => Some(image),
+            Background::Color(_) | Background::Gradient { .. } => None,
+        };
+        fn of(material: &mut Material) -> impl Iterator<Item = &mut ImageFile> {
+            let paint = match &mut material.paint {
+                Paint::Image { image, .. } => Some(image),
+                _ => None,
+            };
+            [paint, material.bump.image_mut()].into_iter().flatten()
+        }
+        sky.into_iter().chain(self.materials.iter_mut().flat_map(of))
+    }
 }
 
 /// `[picture]`.
@@ -119,13 +166,6 @@ pub enum Lens {
     },
 }
 
-/// `[background]`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Background {
-    /// One colour in every direction.
-    pub color: Rgb,
-}
-
 /// `[trace]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
@@ -161,6 +201,8 @@ pub struct Material {
     pub name: String,
     /// Colour of the surface, possibly a pattern (`color` or `texture`).
     pub paint: Paint,
+    /// Its unevenness (`bump`).
+    pub bump: Bump,
     /// Weight of all local light: ambient, diffuse, highlight, emission.
     pub kloc: Rgb,
     /// Share of `ambient_light` shown, times the colour.
@@ -195,23 +237,6 @@ pub struct Material {
     pub gloss: f32,
     /// The same of the refracted ray.
     pub translucency: f32,
-}
-
-/// Colour of a surface: one colour per *slot*; geometry decides which slot a point falls into.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Paint {
-    /// One colour everywhere: slot 0.
-    Solid(Rgb),
-    /// World-space cubes of side `size` in two colours: `a` is slot 0, `b` slot 1. The cube that
-    /// contains a point just above the origin on every axis is `a`.
-    Checker {
-        /// Colour of slot 0.
-        a: Rgb,
-        /// Colour of slot 1.
-        b: Rgb,
-        /// Side of a cube, world units, > 0.
-        size: f64,
-    },
 }
 
 /// `[solids.NAME]`.

@@ -102,7 +102,7 @@ pub enum Kind {
     Points,
     /// The name of a material.
     Material,
-    /// The name of a mesh file.
+    /// The name of a mesh or image file.
     File,
 }
 

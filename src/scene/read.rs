@@ -7,13 +7,17 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::fields::{AREAS, LENSES, PAINTS, PLACES, SHAPES};
+use super::fields::{AREAS, BACKGROUNDS, BUMPS, LENSES, PAINTS, PLACES, SHAPES, TEXTURES};
 use super::mesh::Mesh;
 use super::problem::{Mistake, Problem, SceneError};
 use super::reader;
-use super::{Area, Lens, Light, LightPlace, Material, Paint, Scene, Shape, Solid};
+use super::texture::Image;
+use super::{
+    Area, Background, Bump, ImageFile, Lens, Light, LightPlace, Material, Paint, Scene, Shape,
+    Solid,
+};
 
-/// Reads the scene file at `path`; mesh files are sought beside it.
+/// Reads the scene file at `path`; mesh and image files are sought beside it.
 pub fn file(path: &Path) -> Result<Scene, SceneError> {
     let bytes = std::fs::read(path).map_err(|error| SceneError {
         file: path.to_owned(),
@@ -24,24 +28,36 @@ pub fn file(path: &Path) -> Result<Scene, SceneError> {
         }],
         left_out: 0,
     })?;
-    self::bytes(&bytes, path, Meshes::new())
+    self::bytes(&bytes, path, Known::default())
 }
 
-/// Mesh files that need not be read again, by their names in the scene.
-pub type Meshes = HashMap<String, Arc<Mesh>>;
-
-/// The mesh files that a scene holds.
-pub fn meshes(scene: &Scene) -> Meshes {
-    let mesh = |solid: &Solid| match &solid.shape {
-        Shape::Mesh { file, mesh } => Some((file.clone(), Arc::clone(mesh))),
-        _ => None,
-    };
-    scene.solids.iter().filter_map(mesh).collect()
+/// Mesh and image files that need not be read again, by their names in the scene.
+#[derive(Clone, Debug, Default)]
+pub struct Known {
+    /// Meshes.
+    pub meshes: HashMap<String, Arc<Mesh>>,
+    /// Images.
+    pub images: HashMap<String, Arc<Image>>,
 }
 
-/// Reads what a scene file held; `path` is named in errors, and mesh files that are not in `known`
-/// are sought beside it.
-pub fn bytes(bytes: &[u8], path: &Path, known: Meshes) -> Result<Scene, SceneError> {
+impl Known {
+    /// The files that a scene holds.
+    pub fn of(scene: &Scene) -> Known {
+        let mesh = |solid: &Solid| match &solid.shape {
+            Shape::Mesh { file, mesh } => Some((file.clone(), Arc::clone(mesh))),
+            _ => None,
+        };
+        let image = |image: &ImageFile| (image.file.clone(), Arc::clone(&image.image));
+        Known {
+            meshes: scene.solids.iter().filter_map(mesh).collect(),
+            images: scene.images().map(image).collect(),
+        }
+    }
+}
+
+/// Reads what a scene file held; `path` is named in errors, and mesh and image files that are not
+/// in `known` are sought beside it.
+pub fn bytes(bytes: &[u8], path: &Path, known: Known) -> Result<Scene, SceneError> {
     match str::from_utf8(bytes) {
         Ok(source) => text_with(source, path, known),
         Err(error) => {
@@ -57,13 +73,13 @@ pub fn bytes(bytes: &[u8], path: &Path, known: Meshes) -> Result<Scene, SceneErr
     }
 }
 
-/// Reads scene text; `file` is named in errors, and mesh files are sought beside it.
+/// Reads scene text; `file` is named in errors, and mesh and image files are sought beside it.
 pub fn text(source: &str, file: &Path) -> Result<Scene, SceneError> {
-    text_with(source, file, Meshes::new())
+    text_with(source, file, Known::default())
 }
 
-/// [`text`] with some mesh files at hand.
-pub fn text_with(source: &str, file: &Path, known: Meshes) -> Result<Scene, SceneError> {
+/// [`text`] with some mesh and image files at hand.
+pub fn text_with(source: &str, file: &Path, known: Known) -> Result<Scene, SceneError> {
     let source = source.strip_prefix('\u{feff}').unwrap_or(source);
     let (root, errors) = DeTable::parse_recoverable(source);
     if !errors.is_empty() {
@@ -112,15 +128,38 @@ fn skeleton(root: &DeTable<'_>) -> Scene {
         }
         scene.lights.push(Light { place, ..Light::new(name) });
     }
+    if let Some(key) = chosen(root.get("background"), BACKGROUNDS) {
+        scene.background = Background::named(key);
+    }
     for (name, table) in items(root, "materials") {
-        let paint = Paint::named(chosen(Some(table), PAINTS).unwrap_or_default());
-        scene.materials.push(Material { paint, ..Material::new(name) });
+        let (paint, bump) = (self::paint(table), self::bump(table));
+        scene.materials.push(Material { paint, bump, ..Material::new(name) });
     }
     for (name, table) in items(root, "solids") {
         let shape = Shape::named(chosen(Some(table), SHAPES).unwrap_or_default());
         scene.solids.push(Solid::new(name, shape, 0));
     }
     scene
+}
+
+/// The paint of a material's table, with default colours.
+fn paint(material: &Spanned<DeValue<'_>>) -> Paint {
+    let key = chosen(Some(material), PAINTS).unwrap_or_default();
+    let inner = chosen(inside(material, "texture"), TEXTURES);
+    Paint::named(inner.filter(|_| key == "texture").unwrap_or(key))
+}
+
+/// The bump of a material's table; an empty one is none, one of unknown keys lacks a known one.
+fn bump(material: &Spanned<DeValue<'_>>) -> Bump {
+    let Some(table) = inside(material, "bump") else { return Bump::None };
+    let is_empty = table.get_ref().as_table().is_none_or(DeTable::is_empty);
+    let first = if is_empty { "" } else { BUMPS[0] };
+    Bump::named(chosen(Some(table), BUMPS).unwrap_or(first))
+}
+
+/// What stands behind a key of a table.
+fn inside<'a>(table: &'a Spanned<DeValue<'a>>, key: &str) -> Option<&'a Spanned<DeValue<'a>>> {
+    table.get_ref().as_table()?.get(key)
 }
 
 /// The first of `keys` that stands in the table `value`.
@@ -206,7 +245,7 @@ mod tests {
         assert_eq!(scene.camera.lens, Lens::Perspective { fov_degrees: 40.0 });
         assert_eq!((scene.picture.size, scene.picture.exposure), ([1280, 720], 0.5));
         assert_eq!((scene.trace.samples, scene.trace.cutoff), (4, 1.0 / 255.0));
-        assert_eq!(scene.background.color, Rgb([0.08, 0.16, 0.30]));
+        assert_eq!(scene.background, Background::Color(Rgb([0.08, 0.16, 0.30])));
         assert_eq!(scene.lights[0].intensity, Rgb::grey(0.9));
         assert_eq!(scene.lights[1].place, LightPlace::Direction(DVec3::NEG_Z));
         let checker = Paint::Checker { a: Rgb([0.95, 0.9, 0.2]), b: Rgb::grey(0.1), size: 2.0 };
@@ -343,7 +382,7 @@ mod tests {
             ),
             (
                 "[materials.\"a b\"]\ntexture = {}",
-                "`materials.\"a b\".texture` needs the key `checker`",
+                "`materials.\"a b\".texture` needs one of `checker`, `gradient`, `marble`, `wood`, `image`",
             ),
             (
                 "[materials.a]\ntexture = {checker={a=1,b=1}}",

@@ -7,33 +7,34 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
-use super::Scene;
 use super::check;
 use super::fields::{self, Need, Visit};
 use super::mesh::{self, Mesh};
 use super::problem::{Mistake, Span, suggestion};
-use super::read::Meshes;
+use super::read::Known;
 use super::slot::Slot;
+use super::texture;
 use super::toml_text::{bare_or_quoted, quoted};
 use super::value::{Names, describe};
 use super::write;
+use super::{ImageFile, Scene};
 
 /// The only version of the scene format.
 const VERSION: &str = "1";
 
 /// Fills `scene`, which has the names and variants of `root`; returns the mistakes in any order.
-/// Mesh files are sought in `folder`, unless they are among `meshes`.
+/// Mesh and image files are sought in `folder`, unless they are `known`.
 pub(super) fn fill<'a>(
     scene: &mut Scene,
     root: &'a DeTable<'a>,
     folder: &'a Path,
-    meshes: Meshes,
+    known: Known,
 ) -> Vec<Mistake> {
     let mut reader = Reader {
         scopes: vec![Scope { key: None, span: 0..0, table: Some(root), known: Vec::new() }],
         names: Names::of(&scene.materials),
         folder,
-        meshes,
+        files: known,
         mistakes: Vec::new(),
         broken: HashSet::new(),
     };
@@ -61,7 +62,7 @@ struct Reader<'a> {
     scopes: Vec<Scope<'a>>,
     names: Names,
     folder: &'a Path,
-    meshes: Meshes,
+    files: Known,
     mistakes: Vec<Mistake>,
     /// Tables with a mistake, by one or two keys; their relations are not checked.
     broken: HashSet<Vec<String>>,
@@ -172,25 +173,17 @@ impl<'a> Reader<'a> {
     }
 
     fn mesh(&mut self, value: &Spanned<DeValue<'_>>, name: &mut String, mesh: &mut Arc<Mesh>) {
-        let DeValue::String(text) = value.get_ref() else {
-            return self.report(Mistake {
-                span: value.span(),
-                message: format!(
-                    "`file` must be the name of a file, found {}",
-                    describe(value.get_ref())
-                ),
-                help: "for example `file = \"mesh.obj\"`".to_owned(),
-            });
-        };
-        *name = text.to_string();
-        if let Some(known) = self.meshes.get(name) {
+        if !self.file_name(value, name, "mesh.obj") {
+            return;
+        }
+        if let Some(known) = self.files.meshes.get(name) {
             *mesh = Arc::clone(known);
             return;
         }
         match mesh::read_obj(&self.folder.join(name.as_str())) {
             Ok(read) => {
                 *mesh = Arc::new(read);
-                self.meshes.insert(name.clone(), Arc::clone(mesh));
+                self.files.meshes.insert(name.clone(), Arc::clone(mesh));
             }
             Err(error) => self.report(Mistake {
                 span: value.span(),
@@ -198,6 +191,53 @@ impl<'a> Reader<'a> {
                 help: error.way_out,
             }),
         }
+    }
+
+    fn image(&mut self, value: &Spanned<DeValue<'_>>, file: &mut ImageFile) {
+        if !self.file_name(value, &mut file.file, "image.png") {
+            return;
+        }
+        if let Some(known) = self.files.images.get(&file.file) {
+            file.image = Arc::clone(known);
+            return;
+        }
+        match texture::read(&self.folder.join(&file.file)) {
+            Ok(read) => {
+                file.image = Arc::new(read);
+                self.files.images.insert(file.file.clone(), Arc::clone(&file.image));
+            }
+            Err(error) => self.report(Mistake {
+                span: value.span(),
+                message: format!(
+                    "the image {} cannot be used: {}",
+                    quoted(&file.file),
+                    error.what()
+                ),
+                help: error.way_out,
+            }),
+        }
+    }
+
+    /// Reads the name of a file; whether it is one.
+    fn file_name(
+        &mut self,
+        value: &Spanned<DeValue<'_>>,
+        name: &mut String,
+        example: &str,
+    ) -> bool {
+        let DeValue::String(text) = value.get_ref() else {
+            self.report(Mistake {
+                span: value.span(),
+                message: format!(
+                    "`file` must be the name of a file, found {}",
+                    describe(value.get_ref())
+                ),
+                help: format!("for example `file = \"{example}\"`"),
+            });
+            return false;
+        };
+        *name = text.to_string();
+        true
     }
 
     /// Reports what makes no sense, in tables without other mistakes.
@@ -234,6 +274,10 @@ impl Visit for Reader<'_> {
             (None, _) => Ok(()),
             (Some((_, value)), Slot::Mesh { file, mesh }) => {
                 self.mesh(value, file, mesh);
+                Ok(())
+            }
+            (Some((_, value)), Slot::Image(file)) => {
+                self.image(value, file);
                 Ok(())
             }
             (Some((_, value)), mut slot) => slot.assign(key, value, &names),

@@ -7,6 +7,7 @@ use glam::DVec3;
 use toml::Spanned;
 use toml::de::DeValue;
 
+use super::ImageFile;
 use super::mesh::Mesh;
 use super::problem::Mistake;
 use super::range::{Kind, Range};
@@ -56,6 +57,8 @@ pub enum Slot<'a> {
         /// What the file held.
         mesh: &'a mut Arc<Mesh>,
     },
+    /// An image file and what it held when it was read.
+    Image(&'a mut ImageFile),
 }
 
 impl Slot<'_> {
@@ -72,7 +75,7 @@ impl Slot<'_> {
             Slot::Scale(..) => Kind::Scale,
             Slot::Points(..) => Kind::Points,
             Slot::Material(_) => Kind::Material,
-            Slot::Mesh { .. } => Kind::File,
+            Slot::Mesh { .. } | Slot::Image(_) => Kind::File,
         }
     }
 
@@ -87,7 +90,8 @@ impl Slot<'_> {
             | Slot::Vector(_, range)
             | Slot::Scale(_, range)
             | Slot::Points(_, range) => Some(*range),
-            Slot::Flag(_) | Slot::Choice(_) | Slot::Material(_) | Slot::Mesh { .. } => None,
+            Slot::Flag(_) | Slot::Choice(_) | Slot::Material(_) => None,
+            Slot::Mesh { .. } | Slot::Image(_) => None,
         }
     }
 
@@ -112,6 +116,7 @@ impl Slot<'_> {
                 quoted(names.list.get(**index).map_or("NAME", |name| name.as_str()))
             }
             Slot::Mesh { file, .. } => quoted(file),
+            Slot::Image(ImageFile { file, image: _ }) => quoted(file),
         }
     }
 
@@ -138,7 +143,7 @@ impl Slot<'_> {
             Slot::Scale(v, _) => **v = DVec3::from(target.one_or_three(value)?),
             Slot::Points(points, _) => **points = target.points(value)?,
             Slot::Material(index) => **index = target.material(value, names)?,
-            Slot::Mesh { .. } => return Err(target.fixed(value)),
+            Slot::Mesh { .. } | Slot::Image(_) => return Err(target.fixed(value)),
         }
         match self.first_outside() {
             Some((index, x)) => Err(target.out_of_range(element(value, index), x, self.show(x))),
@@ -166,7 +171,7 @@ impl Slot<'_> {
                 }
             }
             Slot::Material(index) => **index += 1,
-            Slot::Mesh { .. } => {}
+            Slot::Mesh { .. } | Slot::Image(_) => {}
         }
     }
 
@@ -196,7 +201,8 @@ impl Slot<'_> {
             Slot::Points(points, _) => {
                 points.iter().flat_map(DVec3::to_array).enumerate().find(bad)
             }
-            Slot::Flag(_) | Slot::Choice(_) | Slot::Material(_) | Slot::Mesh { .. } => None,
+            Slot::Flag(_) | Slot::Choice(_) | Slot::Material(_) => None,
+            Slot::Mesh { .. } | Slot::Image(_) => None,
         }
     }
 

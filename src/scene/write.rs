@@ -107,7 +107,12 @@ impl Visit for Collect<'_> {
     }
 
     fn group(&mut self, key: &str, need: Need, body: &mut dyn FnMut(&mut dyn Visit)) {
-        let content = Content::Table(nodes(self.names, body));
+        let inside = nodes(self.names, body);
+        // Where there is no bump, its table is not there either.
+        if inside.is_empty() && !LISTS.contains(&key) {
+            return;
+        }
+        let content = Content::Table(inside);
         self.nodes.push(Node { key: key.to_owned(), need, content });
     }
 }
@@ -161,7 +166,7 @@ mod tests {
     use super::*;
     use crate::color::Rgb;
     use crate::scene::filter::Filter;
-    use crate::scene::{Lens, LightPlace, Paint, read};
+    use crate::scene::{Background, Bump, Lens, LightPlace, Paint, read};
 
     /// Whether two scenes are the same to the last bit: `-0` is not `0`, unlike `==`.
     fn same_bits(a: &Scene, b: &Scene) -> bool {
@@ -178,7 +183,7 @@ mod tests {
         scene.camera.target = DVec3::new(-0.0, 5e-324, 1e12);
         scene.camera.up = DVec3::new(0.1, 1.0, 0.0);
         scene.camera.lens = Lens::Parallel { height: 4.0 };
-        scene.background.color = Rgb([0.0, -0.0, 1e-40]);
+        scene.background = Background::Color(Rgb([0.0, -0.0, 1e-40]));
         scene.trace.samples = 4096;
         scene.trace.depth = 0;
         scene.trace.cutoff = 1e-9;
@@ -194,6 +199,14 @@ mod tests {
             Material::new(""),
             Material { paint: Paint::Solid(Rgb([0.1; 3])), ..Material::new("glass") },
         ];
+        for key in fields::TEXTURES.iter().filter(|key| **key != "image") {
+            let bump = Bump::named(fields::BUMPS[scene.materials.len() % 2]);
+            scene.materials.push(Material {
+                paint: Paint::named(key),
+                bump,
+                ..Material::new(*key)
+            });
+        }
         scene.materials[2].reflect = Rgb::grey(f32::from_bits(0x3dcc_cccc));
         scene.materials[2].metallic = 0.5;
         for (index, key) in fields::SHAPES.iter().enumerate().filter(|(_, key)| **key != "mesh") {
@@ -228,7 +241,7 @@ mod tests {
         other.camera.target.x = 0.0;
         assert!(scene == other && !same_bits(&scene, &other));
         other.camera.target.x = -0.0;
-        other.background.color.0[1] = 0.0;
+        other.background = Background::Color(Rgb([0.0, 0.0, 1e-40]));
         assert!(!same_bits(&scene, &other));
     }
 

@@ -113,14 +113,15 @@ impl Session {
             casts |= stale.iter().any(|(_, leads)| *leads);
             nodes.extend(stale.into_iter().map(|(before, _)| before));
         }
+        let seeks = !nodes.is_empty() || change.shadows || change.sky;
         let mut concern = Concern {
             layout: self.transport.layout,
-            terms: vec![Sought::No; if nodes.is_empty() && !change.shadows { 0 } else { count }],
+            terms: vec![Sought::No; if seeks { count } else { 0 }],
             unlisted: Vec::new(),
             frontier: vec![false; count],
         };
         if !concern.terms.is_empty() {
-            mark_nodes(trie, &nodes, change.shadows, &mut concern);
+            mark_nodes(trie, &nodes, change, &mut concern);
         }
         let lists_missing = self.transport.tiles.iter().any(|tile| tile.highlights.is_none());
         if !change.refold.is_empty() && lists_missing {
@@ -239,15 +240,16 @@ impl Session {
 }
 
 /// Marks the terms of the old `materials`' surfaces, of shadow rays through them or stopped by them,
-/// and, if `all` says so, those of every surface.
-fn mark_nodes(trie: &Trie, materials: &[u16], all: bool, concern: &mut Concern) {
+/// and, as the change asks for, those of every surface and of the background.
+fn mark_nodes(trie: &Trie, materials: &[u16], change: &Change, concern: &mut Concern) {
     for (id, node) in trie.nodes().iter().enumerate().skip(1) {
         let (kind, index) = (node.factor.kind(), node.factor.index());
         let named = || materials.contains(&(index as u16));
-        let surface = kind == Kind::Ambient && (all || named());
+        let surface = kind == Kind::Ambient && (change.shadows || named());
+        let sky = kind == Kind::Background && change.sky;
         let shadow = kind == Kind::Shadow && named();
         let above = concern.terms[node.parent as usize];
-        concern.terms[id] = match surface || shadow || above != Sought::No {
+        concern.terms[id] = match surface || sky || shadow || above != Sought::No {
             true if kind == Kind::Through => Sought::Block,
             true => Sought::Lanes,
             false => Sought::No,

@@ -25,10 +25,10 @@ use crate::forest::{Before, Forest};
 use crate::geometry::Geometry;
 use crate::math::exposure_factor;
 use crate::progress::Progress;
-use crate::scene::Scene;
 use crate::scene::change::Change;
 use crate::scene::factor::FactorValues;
 use crate::scene::model::{Lobes, Peak};
+use crate::scene::{Bump, Scene, Solid};
 use crate::shade::cpu;
 use crate::shade::terms::{TermProgram, TermValues};
 
@@ -47,6 +47,8 @@ pub struct Regrow {
     base: Mutex<Option<Base>>,
     /// With what the kept trees were grown.
     before: Before,
+    /// Per solid whether the kept trees were grown with another bump; empty: none was.
+    bent: Vec<bool>,
     /// Per material of the new scene, of the trees when all is done.
     iors_after: Vec<f64>,
     /// The same of lobes.
@@ -104,6 +106,7 @@ impl Session {
             geometry,
             forest: self.forest.clone(),
             before: self.turns(),
+            bent: self.bent(&scene),
             iors_after: self.iors_after(&scene, change),
             lobes_after: self.lobes_after(&scene, change),
             kept: AtomicUsize::new(self.kept_bytes() as usize),
@@ -112,6 +115,20 @@ impl Session {
             scene,
             plan,
         }
+    }
+
+    /// Per solid whether its bump in `scene` is another one than in the kept trees; empty: none is.
+    fn bent(&self, scene: &Scene) -> Vec<bool> {
+        let even = |scene: &Scene| scene.materials.iter().all(|m| m.bump == Bump::None);
+        if even(scene) && even(&self.scene) {
+            return Vec::new();
+        }
+        let pairs = self.scene.solids.iter().zip(&scene.solids);
+        let differs = |(old, new): (&Solid, &Solid)| {
+            let before = &self.scene.materials[old.material].bump;
+            !before.bends_like(&scene.materials[new.material].bump)
+        };
+        pairs.map(differs).collect()
     }
 
     /// Keys of the new scene's lights: a light that is new or elsewhere has a new one.
@@ -294,7 +311,8 @@ impl Regrow {
         progress.begin(self.plan.tiles.len() as u64);
         let base = self.base.lock().unwrap_or_else(PoisonError::into_inner).take();
         let grower =
-            Grower::recalling(&self.scene, &self.geometry, self.keys.clone(), &self.before);
+            Grower::recalling(&self.scene, &self.geometry, self.keys.clone(), &self.before)
+                .with_bent(self.bent.clone());
         let next = AtomicUsize::new(0);
         let results = pool.broadcast(|_| -> Result<(), TraceError> {
             let mut scratch = Scratch {

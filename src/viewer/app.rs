@@ -132,6 +132,7 @@ impl App {
         let step = self.mixer_ui(ui, &mut edited, &mut changed);
         let step = step.or(self.chart_ui(ui, &mut edited, &mut changed));
         let outcome = self.panels(ui, &mut edited, &mut commands);
+        let pick = outcome.pick.clone();
         changed |= self.apply_outcome(outcome, &mut edited);
         changed |= self.picture_ui(ui, &mut edited);
         if changed {
@@ -141,6 +142,9 @@ impl App {
             self.document.name_step(step);
         }
         self.end_gesture(&ctx);
+        if let Some(place) = pick {
+            self.ask_image(&ctx, place);
+        }
         self.modals(&ctx);
         for command in commands {
             self.run(&ctx, command);

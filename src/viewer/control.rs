@@ -45,6 +45,8 @@ pub(super) struct RowOutcome {
     pub(super) changed: bool,
     /// The saved value is wanted back.
     pub(super) reset: bool,
+    /// Another file is wanted.
+    pub(super) pick: bool,
 }
 
 /// Shows the control of one value and writes into it.
@@ -55,6 +57,11 @@ pub(super) fn control_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> Row
         return outcome;
     }
     let (name, value, badge) = columns(ui);
+    if let Slot::Image(image) = slot {
+        column_ui(ui, name, |ui| explained(ui.label(row.key), row, None));
+        outcome.pick = column_ui(ui, value, |ui| image_ui(ui, row, &image.file));
+        return outcome;
+    }
     column_ui(ui, name, |ui| name_ui(ui, row, slot, &mut outcome));
     column_ui(ui, value, |ui| outcome.changed |= value_ui(ui, row, slot));
     // The name of a mesh file is not edited here.
@@ -138,13 +145,16 @@ fn value_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> bool {
             explained(label, row, None);
             false
         }
-        Slot::Points(..) => false,
+        Slot::Points(..) | Slot::Image(_) => false,
     }
 }
 
 /// Whether a geometric number has a natural span for a slider.
 fn has_slider(key: &str) -> bool {
-    matches!(key, "ior" | "fov_degrees" | "shutter" | "falloff" | "angle_degrees" | "edge")
+    matches!(
+        key,
+        "ior" | "fov_degrees" | "shutter" | "falloff" | "angle_degrees" | "edge" | "turbulence"
+    )
 }
 
 /// A slider with a number field. Typed numbers may leave the slider's span, not the range.
@@ -355,6 +365,12 @@ fn material_ui(ui: &mut Ui, row: &Row<'_>, index: &mut usize) -> bool {
     });
     explained(response.response.accessible_name(row.key), row, None);
     *index != before
+}
+
+/// The name of an image file on a button; whether another one is wanted.
+fn image_ui(ui: &mut Ui, row: &Row<'_>, file: &str) -> bool {
+    let button = ui.add(Button::new(file).truncate()).accessible_name("pick an image file");
+    explained(button, row, None).clicked()
 }
 
 /// A polygon's corners, one row each.

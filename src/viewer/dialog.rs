@@ -18,6 +18,8 @@ pub enum Purpose {
     Export,
     /// A mesh that was not found.
     Locate,
+    /// An image to show on a surface or as the background.
+    Image,
 }
 
 impl Purpose {
@@ -28,6 +30,7 @@ impl Purpose {
             Purpose::Save => "Save the scene",
             Purpose::Export => "Export the picture",
             Purpose::Locate => "Find the mesh",
+            Purpose::Image => "Pick an image",
         }
     }
 
@@ -42,6 +45,7 @@ impl Purpose {
             Purpose::Open | Purpose::Save => ("Rayforest scenes", &["toml"]),
             Purpose::Export => ("Pictures", &["png", "exr"]),
             Purpose::Locate => ("Meshes", &["obj"]),
+            Purpose::Image => ("Images", &["png", "jpg", "jpeg", "hdr"]),
         }
     }
 }

@@ -12,10 +12,12 @@ use super::command::Command;
 use super::dialog::{Answer, Dialogs, Purpose, Question, with_ending};
 use super::export::ExportForm;
 use super::inspector::Selection;
+use super::paints::ImageFor;
 use super::path_field::PathField;
 use crate::document::recovery::Found;
 use crate::document::{Document, DocumentError, Save, TEMPLATES};
 use crate::scene::Scene;
+use crate::scene::texture::{Image, ImageError};
 use crate::session::live::Export;
 
 /// Unsaved work is kept after this much rest.
@@ -45,6 +47,8 @@ pub(super) enum For {
     Export(ExportForm),
     /// To use it in place of a mesh that a scene misses.
     Locate { source: Source, located: Located, missing: String },
+    /// To show the image that it holds.
+    Image(ImageFor),
 }
 
 /// What a document is opened from.
@@ -85,7 +89,7 @@ pub(super) enum Modal {
 }
 
 /// What threads have done.
-enum Done {
+pub(super) enum Done {
     /// With the scene that was open when it began.
     Opened {
         source: Source,
@@ -99,6 +103,11 @@ enum Done {
         next: Option<Next>,
     },
     Kept(Result<(), DocumentError>),
+    Image {
+        path: PathBuf,
+        place: ImageFor,
+        result: Box<Result<Image, ImageError>>,
+    },
 }
 
 /// Files, dialogs and threads of the window.
@@ -175,7 +184,7 @@ impl Files {
     }
 
     /// Does slow work in a thread; the window hears of it.
-    fn work(&self, ctx: &Context, job: impl FnOnce() -> Done + Send + 'static) {
+    pub(super) fn work(&self, ctx: &Context, job: impl FnOnce() -> Done + Send + 'static) {
         let (send, ctx) = (self.send.clone(), ctx.clone());
         std::thread::spawn(move || {
             // A window that is closed meanwhile has no use for the result.
@@ -309,6 +318,7 @@ impl App {
                     Err(message) => self.notices.error(message),
                 }
             }
+            For::Image(place) => self.read_image(ctx, file, place),
             For::Locate { source, mut located, missing } => {
                 located.push((missing, file));
                 self.open_source(ctx, source, located);
@@ -382,6 +392,7 @@ impl App {
                 self.files.show(Modal::Changed { save, message: error.message, next });
             }
             Done::Saved { result: Err(error), .. } => self.notices.error(error.message),
+            Done::Image { path, place, result } => self.image_read(&path, &place, *result),
             Done::Kept(Ok(())) => self.files.discard_recovered(),
             Done::Kept(Err(error)) => {
                 self.notices.error(format!("unsaved work is not kept: {}", error.message));

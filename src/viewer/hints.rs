@@ -10,9 +10,11 @@ pub(super) fn about(key: &str) -> &'static str {
         "ambient_light" => "Light that reaches every surface from everywhere, times its ambient",
         "eye" => "Where the eye is, in units of the scene",
         "target" => "The point in the middle of the picture",
-        "up" => "Which way is up in the picture",
+        "up" => "Which way is up, in the picture or in the sky",
         "fov_degrees" => "Vertical angle of view, in degrees",
-        "height" => "Height of the view of a parallel camera, in units of the scene",
+        "height" => {
+            "Height of the view of a parallel camera; of a bump: of its tops; in units of the scene"
+        }
         "aperture" => {
             "Diameter of the lens, in units of the scene: 0 is a pinhole, which blurs nothing; needs \
              several samples"
@@ -21,7 +23,11 @@ pub(super) fn about(key: &str) -> &'static str {
             "Distance in focus, along the view, in units of the scene; 0: that of the target"
         }
         "shutter" => "Share of the solids' motion that the picture sees; 0: it stands still",
-        "size" => "Width and height in pixels; of a checker: side of a cube, in units of the scene",
+        "size" => {
+            "Of the picture: width and height in pixels. Of a checker: side of a cube; of marble and \
+             wood: distance of veins, width of rings; in units of the scene. Of an image: what it \
+             covers"
+        }
         "exposure" => "Brightness of the picture in stops: +1 doubles it",
         "samples" => {
             "Rays, of a picture from the eye through every pixel, of a light with an area from every \
@@ -38,7 +44,7 @@ pub(super) fn about(key: &str) -> &'static str {
         "cutoff" => "Branches that weigh less than this are not followed",
         "color" => "Colour, linear Rec. 709",
         "point" => "Where the light is",
-        "direction" => "The direction in which the light shines",
+        "direction" => "The direction in which the light shines; of marble: across its veins",
         "at" => "Where the light is",
         "towards" => "A point that the light shines at",
         "angle_degrees" => "Angle between the middle and the rim of the cone of light, in degrees",
@@ -82,10 +88,10 @@ pub(super) fn about(key: &str) -> &'static str {
              weighs its surroundings"
         }
         "ior" => "Index of refraction: air 1, water 1.33, glass 1.5, diamond 2.42",
-        "a" => "Colour of the first kind of squares",
-        "b" => "Colour of the second kind of squares",
         "material" => "The material of the solid",
-        "center" => "Centre, of a solid in its own coordinates",
+        "center" => {
+            "Centre, of a solid in its own coordinates; of wood and waves, where rings begin, in the world"
+        }
         "radius" => "Radius",
         "normal" => "Points out of the solid, or stands on the disc; its length does not matter",
         "offset" => "Distance of the plane from the origin along its normal",
@@ -102,8 +108,28 @@ pub(super) fn about(key: &str) -> &'static str {
         "translate" => {
             "Moves the solid, after scale and turn; of a motion: how far it goes from there"
         }
-        "scale" => "Makes the solid larger or smaller, first of all",
-        "file" => "The mesh file; it can be changed in the scene file",
+        "scale" => {
+            "Makes the solid larger or smaller, first of all; of a bump: its length in units of the scene"
+        }
+        key => about_pattern(key),
+    }
+}
+
+/// The same of what only patterns, bumps and backgrounds have.
+fn about_pattern(key: &str) -> &'static str {
+    match key {
+        "a" => "First colour: of every other square, of stone, of early wood, of the start",
+        "b" => "Second colour: of the other squares, of veins, of late wood, of the end",
+        "file" => "The file; a mesh can be changed in the scene file",
+        "from" => "Where the first colour is",
+        "to" => "Where the second colour is",
+        "axis" => "Along the trunk that the wood is of",
+        "turbulence" => "How much veins and rings are folded: 0 is even",
+        "tint" => "Colour that the image is multiplied by",
+        "below" => "Colour of the sky opposite to up",
+        "level" => "Colour of the sky at the horizon",
+        "above" => "Colour of the sky along up",
+        "turn_degrees" => "Turns the panorama to the left, in degrees",
         _ => "",
     }
 }
@@ -133,9 +159,26 @@ pub(super) fn choice(name: &str) -> &'static str {
     }
 }
 
+/// What choosing this kind of paint, bump or background does.
+pub(super) fn kind(name: &str) -> &'static str {
+    match name {
+        "color" => "One colour everywhere",
+        "checker" => "Cubes of two colours",
+        "gradient" => "Colours that change evenly from one place or direction to another",
+        "marble" => "Stone with veins",
+        "wood" => "Rings of a trunk",
+        "image" => "A PNG, JPEG or HDR file; you are asked for it",
+        "none" => "A smooth surface",
+        "noise" => "Irregular bumps",
+        "waves" => "Rings as of a drop in water",
+        _ => "",
+    }
+}
+
 /// Whether a triple of numbers is looked at as a colour rather than as three strengths.
 pub(super) fn is_color(key: &str) -> bool {
-    matches!(key, "color" | "a" | "b" | "filter" | "emission" | "ambient_light")
+    let of_patterns = matches!(key, "a" | "b" | "tint" | "below" | "level" | "above");
+    of_patterns || matches!(key, "color" | "filter" | "emission" | "ambient_light")
 }
 
 /// How a slider shows a number.
@@ -160,6 +203,7 @@ pub(super) fn scale(key: &str, range: Range, value: f64) -> Scale {
         "cutoff" => (0.0, 0.1, false),
         "fov_degrees" => (5.0, 120.0, false),
         "levels" => (1.0, 6.0, false),
+        "turbulence" => (0.0, 4.0, false),
         _ => (range.low.max(0.0), range.high.min(1.0), false),
     };
     Scale { span: low.min(value)..=high.max(value), logarithmic }
@@ -168,12 +212,14 @@ pub(super) fn scale(key: &str, range: Range, value: f64) -> Scale {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::fields::{LENSES, SHAPES};
+    use crate::scene::fields::{BACKGROUNDS, BUMPS, LENSES, SHAPES, TEXTURES};
     use crate::scene::filter::Filter;
     use crate::scene::model::Model;
     use crate::scene::path::parameters;
     use crate::scene::refine::Refine;
-    use crate::scene::{Lens, Light, LightPlace, Material, Paint, Scene, Shape, Solid};
+    use crate::scene::{
+        Background, Bump, Lens, Light, LightPlace, Material, Paint, Scene, Shape, Solid,
+    };
 
     #[test]
     fn every_parameter_is_explained() {
@@ -183,12 +229,22 @@ mod tests {
             assert!(!choice(kind).is_empty(), "{kind}");
         }
         scene.materials.push(Material::new("plain"));
-        scene.materials.push(Material { paint: Paint::named("texture"), ..Material::new("tex") });
+        for key in TEXTURES {
+            scene.materials.push(Material { paint: Paint::named(key), ..Material::new(*key) });
+            assert!(!kind(key).is_empty(), "{key}");
+        }
+        for key in BUMPS {
+            let name = format!("bumpy {key}");
+            scene.materials.push(Material { bump: Bump::named(key), ..Material::new(name) });
+            assert!(!kind(key).is_empty(), "{key}");
+        }
         for key in SHAPES {
             scene.solids.push(Solid::new(*key, Shape::named(key), 0));
         }
-        for lens in LENSES {
+        for (lens, sky) in LENSES.iter().cycle().zip(BACKGROUNDS) {
             scene.camera.lens = Lens::named(lens);
+            scene.background = Background::named(sky);
+            assert!(!kind(sky).is_empty(), "{sky}");
             for parameter in parameters(&scene) {
                 let key = parameter.path.rsplit('.').next().unwrap();
                 assert!(!about(key).is_empty(), "{}", parameter.path);

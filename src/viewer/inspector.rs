@@ -9,6 +9,7 @@ use super::command::Command;
 use super::control::{BADGE, Row, control_ui};
 use super::kind::kind_ui;
 use super::lists::{Subject, offer_ui};
+use super::paints::{ImageFor, kinds_ui};
 use crate::document::things::{Thing, users};
 use crate::scene::Scene;
 use crate::scene::fields::{self, Need, Visit};
@@ -158,6 +159,8 @@ pub(super) struct Outcome {
     pub(super) select: Option<Selection>,
     /// A button was pressed.
     pub(super) command: Option<Command>,
+    /// An image file is wanted.
+    pub(super) pick: Option<ImageFor>,
 }
 
 /// Shows the controls of a selection, which write into `scene`.
@@ -179,8 +182,14 @@ pub(super) fn inspector_ui(
     let names = Names::of(&scene.materials);
     let saved = texts(known.saved, same_name(scene, known.saved, selection));
     ScrollArea::vertical().auto_shrink(false).id_salt(selection).show(ui, |ui| {
+        kinds_ui(ui, scene, selection, &mut outcome);
         let mut controls = Controls {
             ui,
+            selection,
+            name: match selection {
+                Selection::Material(i) => scene.materials[i].name.clone(),
+                _ => String::new(),
+            },
             prefix: String::new(),
             depth: 0,
             names: &names,
@@ -284,6 +293,9 @@ fn same_name(scene: &Scene, other: &Scene, selection: Selection) -> Selection {
 /// Makes a control of every value that it visits.
 struct Controls<'a, 'u> {
     ui: &'u mut Ui,
+    selection: Selection,
+    /// Of the material that is selected.
+    name: String,
     prefix: String,
     depth: usize,
     names: &'a Names,
@@ -305,6 +317,9 @@ impl Visit for Controls<'_, '_> {
         };
         let outcome = control_ui(self.ui, &row, &mut slot);
         self.outcome.changed |= outcome.changed;
+        if outcome.pick {
+            self.outcome.pick = ImageFor::of(&path, self.selection, &self.name);
+        }
         if outcome.reset
             && let Some(value) = row.saved
         {

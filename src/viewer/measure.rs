@@ -83,7 +83,8 @@ fn edit_to_picture(scene: &Scene, options: Options) -> (First, Spread) {
         for light in &mut edited.lights {
             light.intensity = crate::color::Rgb::grey(strength);
         }
-        edited.background.color = crate::color::Rgb::grey(0.1 * strength);
+        edited.background =
+            crate::scene::Background::Color(crate::color::Rgb::grey(0.1 * strength));
         wanted = Arc::new(edited);
         let start = Instant::now();
         live.want(wanted.clone());

@@ -23,6 +23,7 @@ mod modal;
 mod navigate;
 mod notice;
 mod outline;
+mod paints;
 mod path_field;
 mod picture;
 mod rename;

@@ -11,7 +11,7 @@ use super::menu::things_ui;
 use super::rename::{Left, Renaming};
 use crate::color::Rgb;
 use crate::document::things::Thing;
-use crate::scene::{Light, Material, Paint, Scene};
+use crate::scene::{Light, Material, Scene};
 
 /// What the lists show besides the scene.
 pub(super) struct Lists<'a> {
@@ -169,10 +169,7 @@ fn spot_ui(ui: &mut Ui, color: Color32) {
 
 /// The colour that stands for a material: what it is seen by most.
 fn swatch(material: &Material) -> Color32 {
-    let color = match material.paint {
-        Paint::Solid(color) => color,
-        Paint::Checker { a, b, size: _ } => (a + b) * 0.5,
-    };
+    let color = material.paint.mean();
     let glass = material.transmit.max_channel() > 0.5;
     shown(if glass { material.filter } else { color })
 }

@@ -20,7 +20,7 @@ use twox_hash::{XxHash3_64, XxHash3_128};
 use super::codec::{Section, Source, Unsound, record};
 use super::error::Fault;
 use crate::scene::mesh::Mesh;
-use crate::scene::{Scene, Shape};
+use crate::scene::{ImageFile, Scene, Shape};
 use crate::session::trace::TraceReport;
 
 /// How the file begins; the last byte is the format's version.
@@ -119,7 +119,7 @@ impl Numbers {
 pub(super) struct Header {
     /// The program that wrote it: [`super::program`].
     pub(super) program: String,
-    /// Of the meshes of the scene's solids, in their order.
+    /// Of the meshes of the scene's solids and of its images, in their order.
     pub(super) meshes: Vec<u128>,
     /// Of the trace that made it.
     pub(super) trace: TraceReport,
@@ -188,8 +188,8 @@ fn hash_list<T, B: AsRef<[u8]>>(hasher: &mut XxHash3_128, list: &[T], bytes: imp
     hasher.write(&some);
 }
 
-/// The hashes of the meshes of a scene's solids, in their order; a mesh of several solids is read
-/// once.
+/// The hashes of the meshes of a scene's solids, in their order, and of its images; a mesh of several
+/// solids is read once.
 pub(in crate::session) fn hashes(scene: &Scene) -> Vec<u128> {
     let mut known: Vec<(&Arc<Mesh>, u128)> = Vec::new();
     let mut hashes = Vec::new();
@@ -202,6 +202,12 @@ pub(in crate::session) fn hashes(scene: &Scene) -> Vec<u128> {
         }
         hashes.push(found);
     }
+    let image = |file: &ImageFile| {
+        let mut hasher = XxHash3_128::new();
+        file.image.visit(&mut |bytes| hasher.write(bytes));
+        hasher.finish_128()
+    };
+    hashes.extend(scene.images().map(image));
     hashes
 }
 

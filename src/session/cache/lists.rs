@@ -98,7 +98,12 @@ fn target(
     } else {
         tile.entries[from as usize] as usize
     };
-    let factor = trie.nodes()[tile.terms[entry] as usize].factor;
+    // Where a texel colours it, each channel has a term of its own.
+    let node = &trie.nodes()[tile.terms[entry] as usize];
+    let factor = match node.factor.kind() {
+        Kind::Channel => trie.nodes()[node.parent as usize].factor,
+        _ => node.factor,
+    };
     let lit = matches!(factor.kind(), Kind::Specular | Kind::Through);
     ensure(lit && factor.index() == usize::from(material), "a highlight of another term")?;
     Ok(after - 1)

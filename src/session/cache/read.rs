@@ -19,7 +19,7 @@ use crate::forest::kept::KeptTrees;
 use crate::geometry::Geometry;
 use crate::progress::Progress;
 use crate::scene::Scene;
-use crate::scene::read::{meshes, text_with};
+use crate::scene::read::{Known, text_with};
 use crate::session::trace::TraceReport;
 
 /// The text of a scene and its terms may take this many bytes in any budget.
@@ -228,16 +228,16 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The scene that a cache was made from, with the meshes of the opened one: they must be those it
+/// The scene that a cache was made from, with the meshes and images of the opened one: they must be those it
 /// had.
 fn scene(file: &Opened, path: &Path, opened: &Scene) -> Result<Scene, Fault> {
     let text = file.part(Numbers::SCENE, &mut Scratch::default(), |source| {
         String::from_utf8(source.array()?).map_err(|_| "it is no text")
     })?;
-    let read = text_with(&text, path, meshes(opened));
+    let read = text_with(&text, path, Known::of(opened));
     let scene = read.map_err(|_| Fault::stale("its scene cannot be read any more"))?;
     if file::hashes(&scene) != file.header.meshes {
-        return Err(Fault::stale("a mesh has changed"));
+        return Err(Fault::stale("a mesh or an image has changed"));
     }
     if scene.picture.size != opened.picture.size {
         let [[a, b], [c, d]] = [scene.picture.size, opened.picture.size];

@@ -11,27 +11,28 @@ use crate::fold::trie::{Marks, ROOT, Trie, TrieNode};
 use crate::forest::kept::{KeptLight, KeptNode, KeptStart, KeptTrees};
 use crate::forest::tree::{Branch, entries};
 use crate::geometry::Geometry;
+use crate::scene::Scene;
 use crate::scene::factor::{Factor, Kind};
 use crate::scene::fields::{DEPTH, EXPONENT};
-use crate::scene::{Paint, Scene};
 
 /// `what` unless it holds.
 pub(super) fn ensure(holds: bool, what: Unsound) -> Result<(), Unsound> {
     if holds { Ok(()) } else { Err(what) }
 }
 
-/// How many slots each material's paint has.
-fn slots(scene: &Scene) -> Vec<usize> {
-    let count = |paint: &Paint| match paint {
-        Paint::Solid(_) => 1,
-        Paint::Checker { .. } => 2,
-    };
-    scene.materials.iter().map(|m| count(&m.paint)).collect()
+/// How many slots there are.
+struct Slots {
+    /// Per material those of its paint.
+    paints: Vec<usize>,
+    background: usize,
 }
 
 /// Whether the terms of a trie, which stand in canonical order, are products of a scene's factors.
 pub(super) fn trie(trie: &Trie, scene: &Scene) -> Result<(), Unsound> {
-    let slots = slots(scene);
+    let slots = Slots {
+        paints: scene.materials.iter().map(|m| m.paint.slots()).collect(),
+        background: scene.background.slots(),
+    };
     for node in &trie.nodes()[1..] {
         let TrieNode { parent, factor, marks } = *node;
         ensure(is_of(factor, &slots), "a term has a factor of nothing")?;
@@ -45,12 +46,12 @@ pub(super) fn trie(trie: &Trie, scene: &Scene) -> Result<(), Unsound> {
     Ok(())
 }
 
-/// Whether a scene with these slots per material has the factor. Lights that are gone have left
+/// Whether a scene with these slots has the factor. Lights that are gone have left
 /// their places behind.
-fn is_of(factor: Factor, slots: &[usize]) -> bool {
+fn is_of(factor: Factor, Slots { paints: slots, background }: &Slots) -> bool {
     let (index, slot) = (factor.index(), factor.slot());
     match factor.kind() {
-        Kind::Background => index == 0 && slot == 0,
+        Kind::Background => index == 0 && slot < *background,
         Kind::Reflect | Kind::Transmit | Kind::TotalReflect => index < slots.len() && slot == 0,
         Kind::Through | Kind::Shadow => index < slots.len() && slot == 0,
         Kind::Ambient | Kind::Diffuse | Kind::Specular => {

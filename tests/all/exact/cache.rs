@@ -50,7 +50,8 @@ fn reopens_as(scene: &Scene, path: &Path, class: Class, what: &str) -> Session {
     // Whatever comes later is as exact.
     let mut later = scene.clone();
     later.materials[0].shininess = 7.0;
-    later.background.color = rayforest::color::Rgb([0.25, 0.5, 0.125]);
+    later.background =
+        rayforest::scene::Background::Color(rayforest::color::Rgb([0.25, 0.5, 0.125]));
     session.edit(later.clone(), &Progress::default()).unwrap();
     assert_same_picture(&session, &open(&later, 2), &format!("{what}, and an edit"));
     session

@@ -45,12 +45,12 @@ fn matches(pattern: &str, path: &str) -> bool {
     pattern.len() == path.len() && pattern.iter().zip(&path).all(|(p, s)| *p == "*" || p == s)
 }
 
-fn row_of<'a>(rows: &'a [Row], path: &str) -> Result<&'a Row, String> {
+pub(super) fn row_of<'a>(rows: &'a [Row], path: &str) -> Result<&'a Row, String> {
     rows.iter().find(|row| matches(row.path, path)).ok_or(format!("`{path}` has no row"))
 }
 
 /// Makes one edit and holds it to its class, its rays, and the exact picture.
-fn edit_is(session: &mut Session, scene: Scene, expected: Class, what: &str) {
+pub(super) fn edit_is(session: &mut Session, scene: Scene, expected: Class, what: &str) {
     let expected = if scene == *session.scene() { Class::None } else { expected };
     let kept = session.forest().clone();
     assert_eq!(session.class_of(&scene), expected, "{what}: class beforehand");
@@ -106,7 +106,7 @@ fn hold_to_table(scene: &Scene) {
 }
 
 /// Takes one parameter through the steps of its row, from `first` on.
-fn take_steps(first: &Session, parameter: &Parameter, row: &Row) {
+pub(super) fn take_steps(first: &Session, parameter: &Parameter, row: &Row) {
     let mut session = open(first.scene(), 2);
     for (step, (value, class)) in row.steps.iter().enumerate() {
         let original = *value == "@";

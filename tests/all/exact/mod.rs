@@ -14,6 +14,7 @@ pub(crate) mod random;
 mod regrows;
 mod stopped;
 mod table;
+mod textures;
 mod threads;
 
 use std::path::{Path, PathBuf};
@@ -45,8 +46,9 @@ fn scenes() -> PathBuf {
 }
 
 /// The shipped scenes by the stem of their file.
-const SHIPPED: [&str; 9] =
-    ["whitted", "plain", "glass", "gems", "flake", "mesh", "mirrors", "motion", "studio"];
+const SHIPPED: [&str; 10] = [
+    "whitted", "plain", "glass", "gems", "flake", "mesh", "mirrors", "motion", "studio", "gallery",
+];
 
 /// A shipped scene as a small picture; the knot with fewer triangles, the flake with fewer spheres.
 fn shipped(name: &str, size: [u32; 2], samples: u32) -> Scene {
@@ -56,6 +58,7 @@ fn shipped(name: &str, size: [u32; 2], samples: u32) -> Scene {
     set(&mut scene, "trace.samples", &samples.to_string());
     match name {
         "mesh" | "studio" => set(&mut scene, "solids.knot.knot.segments", "[90, 12]"),
+        "gallery" => set(&mut scene, "solids.ribbon.knot.segments", "[60, 8]"),
         "flake" => set(&mut scene, "solids.flake.sphereflake.levels", "4"),
         _ => {}
     }

@@ -10,7 +10,7 @@ use rayforest::forest::tree::{Branch, Reader};
 use rayforest::progress::Progress;
 use rayforest::scene::change::Change;
 use rayforest::scene::factor::Kind;
-use rayforest::scene::{Light, LightPlace, Material, Paint, Scene, read, write};
+use rayforest::scene::{Background, Bump, Light, LightPlace, Material, Paint, Scene, read, write};
 use rayforest::session::cache;
 use rayforest::session::plan::Plan;
 use rayforest::session::trace::TraceError;
@@ -35,7 +35,12 @@ fn edited(scene: &Scene, random: &mut Random) -> (Scene, String) {
     let name = scene.materials[material].name.clone();
     let weights = ["0", "0.003", "0.02", "0.3", "[0.5, 0, 0.2]", "0.8", "1.2"];
     let blurs = scene.materials.iter().any(|m| m.lobes() != [0.0; 2]);
-    let words = match random.below(if blurs { 22 } else { 17 }) {
+    // What only scenes that blur have is left out of the numbers elsewhere.
+    let choice = match (blurs, random.below(if blurs { 25 } else { 20 })) {
+        (false, choice @ 17..) => choice + 5,
+        (_, choice) => choice,
+    };
+    let words = match choice {
         0 if lights > 0 => {
             let light = &mut edited.lights[random.below(lights)];
             let by = glam::DVec3::new(random.unit(), random.unit(), random.unit()) - 0.4;
@@ -65,14 +70,7 @@ fn edited(scene: &Scene, random: &mut Random) -> (Scene, String) {
         7 | 8 => set_to(&mut edited, &format!("materials.{name}.reflect"), random.pick(&weights)),
         9 => set_to(&mut edited, "trace.depth", random.pick(&["0", "1", "2", "4", "5"])),
         10 => set_to(&mut edited, "trace.cutoff", random.pick(&["0.0039", "0.02", "0.3"])),
-        11 => {
-            let size = 0.4 + random.unit();
-            edited.materials[material].paint = match &scene.materials[material].paint {
-                Paint::Solid(color) => Paint::Checker { a: *color, b: *color * 0.5, size },
-                Paint::Checker { a, b: _, size: _ } => Paint::Solid(*a),
-            };
-            format!("another texture of {name}")
-        }
+        11 | 22.. => repainted(&mut edited, material, choice, random),
         13 => {
             let models = ["phong", "blinn", "cook_torrance", "hall"];
             set_to(&mut edited, &format!("materials.{name}.model"), random.pick(&models))
@@ -128,6 +126,37 @@ fn lit_or_blurred(scene: &mut Scene, name: &str, random: &mut Random) -> String 
                 place => place.turned_into(random.pick(&LightPlace::KINDS)),
             };
             format!("{name} is a {:?}", light.place)
+        }
+    }
+}
+
+/// Another kind of paint, bump or background.
+fn repainted(scene: &mut Scene, material: usize, choice: usize, random: &mut Random) -> String {
+    let Scene { materials, background, .. } = scene;
+    let Material { name, paint, bump, .. } = &mut materials[material];
+    match choice {
+        11 => {
+            let size = 0.4 + random.unit();
+            *paint = match &*paint {
+                Paint::Solid(color) => Paint::Checker { a: *color, b: *color * 0.5, size },
+                other => other.turned_into("color"),
+            };
+            format!("another texture of {name}")
+        }
+        22 => {
+            let kind = random.pick(&["color", "checker", "gradient", "marble", "wood"]);
+            *paint = paint.turned_into(kind);
+            format!("{name} of {kind}")
+        }
+        23 => {
+            let kind = random.pick(&["none", "noise", "waves"]);
+            *bump = Bump::named(kind);
+            format!("bump of {name}: {kind}")
+        }
+        _ => {
+            let kind = random.pick(&["color", "gradient"]);
+            *background = Background::named(kind);
+            format!("background: {kind}")
         }
     }
 }
@@ -279,7 +308,7 @@ fn reopened(session: &Session, trees: bool) -> Session {
     let path = folder.path().join("kept");
     cache::write(session, &path, trees, &Progress::default()).unwrap();
     let saved = write::text(session.scene());
-    let scene = read::text(&saved, Path::new("saved.toml")).unwrap();
+    let scene = read::text(&saved, Path::new("scenes/saved.toml")).unwrap();
     let (opened, report) =
         Session::open_cached(Arc::new(scene), &path, session.options(), &Progress::default())
             .unwrap();
@@ -394,6 +423,11 @@ fn studio() {
 fn lamps() {
     let scene = read::text(LAMPS, Path::new("lamps.toml")).unwrap();
     wander("lamps", &scene, None);
+}
+
+#[test]
+fn gallery() {
+    wander("gallery", &small("gallery"), None);
 }
 
 #[test]

@@ -165,12 +165,12 @@ pub(super) struct Row {
     pub(super) steps: &'static [(&'static str, Class)],
 }
 
-const fn row(path: &'static str, steps: &'static [(&'static str, Class)]) -> Row {
+pub(super) const fn row(path: &'static str, steps: &'static [(&'static str, Class)]) -> Row {
     Row { path, steps }
 }
 
 /// Light, colours and coefficients: instant whatever the value, zero included.
-const COLOR: &[(&str, Class)] = &[
+pub(super) const COLOR: &[(&str, Class)] = &[
     ("0", Reshade),
     ("0.004", Reshade),
     ("1", Reshade),

@@ -9,10 +9,11 @@
 use glam::DVec3;
 
 use rayforest::color::Rgb;
+use rayforest::geometry::Tone;
 use rayforest::progress::Progress;
 use rayforest::scene::model::Model;
 use rayforest::scene::path::{self, Parameter};
-use rayforest::scene::{Material, Paint, Scene};
+use rayforest::scene::{Background, Material, Paint, Scene};
 use rayforest::session::{Class, Session};
 
 use super::picture::Picture;
@@ -49,8 +50,9 @@ fn evaluate(trees: &[PixelTrees], scene: &Scene) -> Evaluated {
     let mut sizes = picture.clone();
     for pixel in trees {
         let (mut sum, mut size) = (DVec3::ZERO, DVec3::ZERO);
-        for (tree, weight) in pixel.samples.iter().zip(&pixel.weights) {
-            let light = evaluator.sample(tree.as_ref());
+        let samples = pixel.samples.iter().zip(&pixel.skies);
+        for ((tree, sky), weight) in samples.zip(&pixel.weights) {
+            let light = evaluator.sample(tree.as_ref(), *sky);
             (sum, size) = (sum + *weight * light, size + weight.abs() * light);
         }
         let [x, y] = pixel.pixel;
@@ -80,10 +82,10 @@ struct Path {
 }
 
 impl Evaluator<'_> {
-    fn sample(&mut self, tree: Option<&Tree>) -> DVec3 {
+    fn sample(&mut self, tree: Option<&Tree>, seen: Option<Tone>) -> DVec3 {
         match tree {
             Some(tree) => self.light(tree, Path { weight: DVec3::ONE, geometric: 1.0, depth: 0 }),
-            None => rgb(self.scene.background.color),
+            None => sky(self.scene, seen),
         }
     }
 
@@ -112,11 +114,11 @@ impl Evaluator<'_> {
                 self.missing += 1;
                 DVec3::ZERO
             }
-            (Limb::Missed | Limb::Grown(_), None) => {
+            (Limb::Missed(_) | Limb::Grown(_), None) => {
                 self.dead += 1;
                 DVec3::ZERO
             }
-            (Limb::Missed, Some(_)) => rgb(self.scene.background.color),
+            (Limb::Missed(seen), Some(_)) => sky(self.scene, *seen),
             (Limb::Grown(tree), Some(child)) => self.light(tree, child),
         }
     }
@@ -142,13 +144,31 @@ impl Evaluator<'_> {
 
 /// Ambient light, lamps, and what the surface gives off, without kloc.
 fn local(scene: &Scene, tree: &Tree, m: &Material) -> DVec3 {
-    let o = match (&m.paint, tree.slot) {
-        (Paint::Solid(color), _) => rgb(*color),
-        (Paint::Checker { a, .. }, 0) => rgb(*a),
-        (Paint::Checker { b, .. }, _) => rgb(*b),
+    let o = match (&m.paint, tree.tone) {
+        (Paint::Solid(color), None) => rgb(*color),
+        (Paint::Checker { a, b, .. }, None) => rgb([*a, *b][tree.slot]),
+        (Paint::Image { tint, .. }, Some(Tone::Texel(texel))) => rgb(texel) * rgb(*tint),
+        (
+            Paint::Gradient { a, b, .. } | Paint::Marble { a, b, .. } | Paint::Wood { a, b, .. },
+            Some(Tone::Blend { slot: 0, share }),
+        ) => rgb(*a).lerp(rgb(*b), share.into()),
+        other => panic!("{other:?}"),
     };
     let lamps: DVec3 = tree.lights.iter().map(|lit| lamp(scene, lit, m, o)).sum();
     rgb(m.emission) + rgb(m.ambient) * o * rgb(scene.ambient_light) + lamps
+}
+
+/// What a ray sees that left the scene.
+fn sky(scene: &Scene, seen: Option<Tone>) -> DVec3 {
+    match (&scene.background, seen) {
+        (Background::Color(color), None) => rgb(*color),
+        (Background::Gradient { below, level, above, .. }, Some(Tone::Blend { slot, share })) => {
+            let colors = [*below, *level, *above].map(rgb);
+            colors[usize::from(slot)].lerp(colors[usize::from(slot) + 1], share.into())
+        }
+        (Background::Image { tint, .. }, Some(Tone::Texel(texel))) => rgb(texel) * rgb(*tint),
+        other => panic!("{other:?}"),
+    }
 }
 
 fn lamp(scene: &Scene, lit: &Lit, m: &Material, o: DVec3) -> DVec3 {
@@ -244,9 +264,8 @@ fn new_value(
         format!("{channels:?}")
     };
     Some(match key {
-        "ambient_light" | "color" | "a" | "b" | "kloc" | "ambient" | "diffuse" | "specular" => {
-            triple(1.0)
-        }
+        "ambient_light" | "color" | "a" | "b" | "kloc" | "ambient" | "diffuse" | "specular"
+        | "tint" | "below" | "level" | "above" => triple(1.0),
         "emission" => triple(0.2),
         "intensity" => triple(1.5),
         "reflect" | "transmit" | "filter" if original.range.is_some() => match dice.roll() {

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use rayforest::color::Rgb;
 use rayforest::scene::filter::Filter;
-use rayforest::scene::{Camera, Lens, Material, Picture, Scene, Shape, Solid, Trace};
+use rayforest::scene::{Background, Camera, Lens, Material, Picture, Scene, Shape, Solid, Trace};
 
 use super::stage::open;
 
@@ -213,7 +213,7 @@ fn a_picture_of_one_light_keeps_it_whatever_the_filter() {
     for filter in Filter::ALL {
         for samples in [1, 2, 3, 5, 16, 64] {
             let mut scene = dark([40, 33], samples, Lens::Parallel { height: 48.0 });
-            scene.background.color = Rgb::grey(0.7);
+            scene.background = Background::Color(Rgb::grey(0.7));
             scene.trace.filter = filter;
             let rows = light(&scene);
             let worst = rows.iter().flatten().map(|l| (l / f64::from(0.7f32) - 1.0).abs());

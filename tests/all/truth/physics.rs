@@ -8,6 +8,7 @@ mod models;
 mod penumbra;
 mod refraction;
 mod shadow;
+mod textures;
 
 use glam::DVec3;
 

@@ -2,6 +2,7 @@
 
 use rayforest::film::layout::{LANES, Place, TILE_BLOCKS};
 use rayforest::forest::tree::{BEHIND, BLOCKED, Branch, TileTrees, entries};
+use rayforest::geometry::Tone;
 use rayforest::progress::Progress;
 use rayforest::session::Session;
 
@@ -11,6 +12,8 @@ pub(super) struct Tree {
     pub(super) primitive: u32,
     pub(super) material: usize,
     pub(super) slot: usize,
+    /// What colours it in place of the slot.
+    pub(super) tone: Option<Tone>,
     /// Fresnel's reflectance, if it weighs the branches.
     pub(super) fresnel: Option<f64>,
     /// Whether the mirror ray is that of total reflection.
@@ -35,7 +38,8 @@ pub(super) struct Lit {
 /// What became of a branch.
 pub(super) enum Limb {
     Grown(Box<Tree>),
-    Missed,
+    /// It saw the background: this of it, if that is not one colour.
+    Missed(Option<Tone>),
     /// Not followed: its factor is zero, or a weight, or the depth limit, forbade it.
     Cut(Branch),
     Absent,
@@ -47,6 +51,8 @@ pub(super) struct PixelTrees {
     pub(super) samples: Vec<Option<Tree>>,
     /// What each counts; their mean is 1.
     pub(super) weights: Vec<f64>,
+    /// Per sample what it saw of the background, if it left the scene and that is not one colour.
+    pub(super) skies: Vec<Option<Tone>>,
 }
 
 /// The trees of every pixel of a session.
@@ -57,15 +63,13 @@ pub(super) fn pixels(session: &Session) -> Vec<PixelTrees> {
     let mut list = Vec::new();
     for tile in 0..layout.tiles() {
         let trees = &session.trees(tile, &Progress::default()).expect("trees within the budget");
-        let start =
-            Cursor { trees, materials: &materials, sample: 0, node: 0, light: 0, crossing: 0 };
-        let mut cursor = start;
+        let mut cursor = Cursor { trees, materials: &materials, at: Places::default() };
         for block in 0..TILE_BLOCKS {
             for lane in 0..LANES {
                 if let Some(pixel) = layout.pixel(Place { tile, block, lane }) {
                     let weights = (0..samples as usize).map(|i| cursor.weight(i)).collect();
-                    let samples = (0..samples).map(|_| cursor.sample()).collect();
-                    list.push(PixelTrees { pixel, samples, weights });
+                    let (samples, skies) = (0..samples).map(|_| cursor.sample()).unzip();
+                    list.push(PixelTrees { pixel, samples, weights, skies });
                 }
             }
         }
@@ -78,27 +82,47 @@ struct Cursor<'a> {
     trees: &'a TileTrees,
     /// Per solid.
     materials: &'a [usize],
+    at: Places,
+}
+
+/// How much was read of every list.
+#[derive(Debug, Default, PartialEq)]
+struct Places {
     sample: usize,
     node: usize,
     light: usize,
     crossing: usize,
+    tone: usize,
+    sky: usize,
 }
 
 impl Cursor<'_> {
     /// The weight of the sample that comes so many later.
     fn weight(&self, later: usize) -> f64 {
-        self.trees.weights.get(self.sample + later).map_or(1.0, |weight| f64::from(*weight))
+        self.trees.weights.get(self.at.sample + later).map_or(1.0, |weight| f64::from(*weight))
     }
 
-    fn sample(&mut self) -> Option<Tree> {
-        self.sample += 1;
-        self.trees.hits[self.sample - 1].then(|| self.tree())
+    fn sample(&mut self) -> (Option<Tree>, Option<Tone>) {
+        self.at.sample += 1;
+        match self.trees.hits[self.at.sample - 1] {
+            true => (Some(self.tree()), None),
+            false => (None, self.sky()),
+        }
+    }
+
+    /// What the next ray saw that left the scene; `None` if all of them see one colour.
+    fn sky(&mut self) -> Option<Tone> {
+        let tone = *self.trees.skies.get(self.at.sky)?;
+        self.at.sky += 1;
+        Some(tone)
     }
 
     /// A tree is at most 64 branches deep, and so is the recursion.
     fn tree(&mut self) -> Tree {
-        let node = self.trees.nodes[self.node];
-        self.node += 1;
+        let node = self.trees.nodes[self.at.node];
+        self.at.node += 1;
+        let tone = node.toned.then(|| self.trees.tones[self.at.tone]);
+        self.at.tone += usize::from(node.toned);
         let lights = (0..node.lights).filter_map(|_| self.lit()).collect();
         let reflected = self.limb(node.ends.reflected());
         let transmitted = self.limb(node.ends.transmitted());
@@ -107,6 +131,7 @@ impl Cursor<'_> {
             primitive: node.primitive,
             material: node.material.into(),
             slot: node.slot.into(),
+            tone,
             fresnel: (node.fresnel >= 0.0).then_some(node.fresnel.into()),
             total: node.ends.total(),
             lights,
@@ -117,12 +142,12 @@ impl Cursor<'_> {
 
     /// The next light; none where a ray had nothing to show.
     fn lit(&mut self) -> Option<Lit> {
-        let hit = self.trees.lights[self.light];
-        self.light += 1;
+        let hit = self.trees.lights[self.at.light];
+        self.at.light += 1;
         let blocked = hit.crossed == BLOCKED;
         let count = entries(hit.crossed);
-        let solids = &self.trees.crossings[self.crossing..self.crossing + count];
-        self.crossing += count;
+        let solids = &self.trees.crossings[self.at.crossing..][..count];
+        self.at.crossing += count;
         let mut materials: Vec<usize> =
             solids.iter().map(|&solid| self.materials[solid as usize]).collect();
         materials.sort_unstable();
@@ -139,18 +164,25 @@ impl Cursor<'_> {
     fn limb(&mut self, branch: Branch) -> Limb {
         match branch {
             Branch::Grown => Limb::Grown(Box::new(self.tree())),
-            Branch::Missed => Limb::Missed,
+            Branch::Missed => Limb::Missed(self.sky()),
             Branch::Absent | Branch::Astray => Limb::Absent,
             Branch::Zero | Branch::Weight | Branch::Depth | Branch::Faint => Limb::Cut(branch),
         }
     }
 
     fn assert_at_end(&self) {
-        let TileTrees { blocks: _, hits, weights, nodes, lights, crossings } = self.trees;
-        let at = [self.sample, self.node, self.light, self.crossing];
-        let end = [hits.len(), nodes.len(), lights.len(), crossings.len()];
+        let TileTrees { blocks: _, hits, weights, nodes, lights, crossings, tones, skies } =
+            self.trees;
         assert!(weights.is_empty() || weights.len() == hits.len(), "weights of all samples");
-        assert_eq!(at, end, "samples, nodes, lights and crossings read, and how many there are");
+        let end = Places {
+            sample: hits.len(),
+            node: nodes.len(),
+            light: lights.len(),
+            crossing: crossings.len(),
+            tone: tones.len(),
+            sky: skies.len(),
+        };
+        assert_eq!(self.at, end, "what was read of every list, and how much there is");
     }
 }
 

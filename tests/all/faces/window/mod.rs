@@ -9,6 +9,7 @@ mod files;
 mod handles;
 mod keep;
 mod keyboard;
+mod kinds;
 mod lists;
 mod mixer;
 mod names;

@@ -27,7 +27,7 @@ fn reflectance(degrees: f64, ior: f64) -> f64 {
 fn towards_plane(degrees: f64) -> Scene {
     let i = degrees.to_radians();
     let eye = DVec3::new(-i.sin(), 0.0, i.cos()) * 3.0;
-    Scene { background: Background { color: Rgb::WHITE }, ..one_ray(eye, -eye.normalize()) }
+    Scene { background: Background::Color(Rgb::WHITE), ..one_ray(eye, -eye.normalize()) }
 }
 
 fn glass(ior: f64) -> Material {
@@ -88,7 +88,7 @@ fn a_slab_lets_through_what_all_its_reflections_leave() {
 #[test]
 fn glass_vanishes_in_uniform_light() {
     let ball = |impact: f64| Scene {
-        background: Background { color: Rgb::WHITE },
+        background: Background::Color(Rgb::WHITE),
         solids: vec![solid(sphere(DVec3::ZERO, 1.0), 0)],
         ..one_ray(DVec3::new(impact, 0.0, 5.0), DVec3::NEG_Z)
     };

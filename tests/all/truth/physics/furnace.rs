@@ -17,7 +17,7 @@ const EXACT: f64 = 1e-6;
 fn furnace(solid: Solid, material: Material) -> Scene {
     Scene {
         picture: Picture { size: [32, 18], exposure: 0.0 },
-        background: Background { color: Rgb::WHITE },
+        background: Background::Color(Rgb::WHITE),
         trace: Trace { samples: 4, depth: 64, cutoff: 0.0, ..Trace::default() },
         materials: vec![material],
         solids: vec![solid],

@@ -122,7 +122,7 @@ fn what_falls_on_the_wrong_side_counts_nothing() {
             let through = blurred.translucency > 0.0;
             let sheet = solid(Shape::Polygon { points: points.clone() }, 0);
             let scene = Scene {
-                background: Background { color: Rgb::WHITE },
+                background: Background::Color(Rgb::WHITE),
                 ..scene(blurred, eye, 16, vec![sheet])
             };
             let pixels = shown(scene);

@@ -306,7 +306,7 @@ fn total_reflection_begins_at_the_critical_angle() {
             let glass = &mut scene.materials[0];
             *glass = Material { reflect: kr, transmit: kt, filter, ..glass.clone() };
             scene.trace.depth = 1;
-            scene.background = Background { color: Rgb::WHITE };
+            scene.background = Background::Color(Rgb::WHITE);
             let session = open(scene);
             let tree = tree(&session);
             let total = beyond > 0.0;
