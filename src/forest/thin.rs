@@ -14,7 +14,7 @@ const THIN: f64 = 1.5;
 /// Marks for one thing at most: a wire across the largest picture.
 const MOST_MARKS: usize = 1 << 18;
 
-/// The pixels where spheres, boxes and polygons are seen whose picture is thinner than [`THIN`].
+/// The pixels where spheres, boxes and polygons are seen whose picture is thinner than 1½ pixels.
 ///
 /// Those of a mesh, a knot or a sphereflake are not looked for; nor is what is seen in mirrors.
 #[derive(Clone, Debug, Default)]

@@ -89,6 +89,13 @@ pub(super) fn about(key: &str) -> &'static str {
         }
         "ior" => "Index of refraction: air 1, water 1.33, glass 1.5, diamond 2.42",
         "material" => "The material of the solid",
+        _ => about_form(key),
+    }
+}
+
+/// The same of the keys of solids, cameras and lights' places.
+fn about_form(key: &str) -> &'static str {
+    match key {
         "center" => {
             "Centre, of a solid in its own coordinates; of wood and waves, where rings begin, in the world"
         }
