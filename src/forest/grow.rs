@@ -487,7 +487,8 @@ impl<'a> Grower<'a> {
         } else if ends.map(Ends::transmitted) == Some(Branch::Grown) {
             queue(Err(End::Zero), 0.0, Side::Transmitted, from.medium, Known::Dropped);
         }
-        let known = known(ends.map(Ends::reflected), before[0] == gloss, reflected.is_ok());
+        let same = straight && before[0] == gloss;
+        let known = known(ends.map(Ends::reflected), same, reflected.is_ok());
         queue(reflected, mirrored, Side::Reflected, from.medium, known);
         Ok(())
     }

@@ -216,5 +216,8 @@ fn a_mesh_that_changed_is_stale() {
     set(&mut dyed, "materials.clay.color", "[1, 0, 0]");
     reopens_as(&dyed, &path, Class::Reshade, "the same mesh, read again");
     let taller = obj("1.0000000000000002");
-    assert_eq!(refused(&taller, &path), Fault::Stale { what: "a mesh has changed".into() });
+    assert_eq!(
+        refused(&taller, &path),
+        Fault::Stale { what: "a mesh or an image has changed".into() }
+    );
 }
