@@ -130,7 +130,10 @@ fn cost_of_falloff(session: &mut Session, altered: &Scene) -> Option<Cost> {
 pub fn cost_of_preview(session: &mut Session, path: &str) -> Option<Cost> {
     let altered = path::altered(session.scene(), path)?;
     let falls_off = cost_of_falloff(session, &altered).is_some();
-    if falls_off || knob(session.scene(), &altered).is_some() {
+    let (old, new) = (&session.scene().trace, &altered.trace);
+    // With the samples of a preview nothing is adaptive.
+    let sampling = old.adaptive != new.adaptive || old.refine != new.refine;
+    if sampling || falls_off || knob(session.scene(), &altered).is_some() {
         return None;
     }
     let cost = cost_of(session, &altered);
