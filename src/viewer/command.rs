@@ -135,7 +135,7 @@ impl Command {
             Command::Handles => "Handles in the picture that move and turn the lights",
             Command::Mixer => "All lights side by side: on, solo, stops, colour, temperature",
             Command::Chart => {
-                "Measures samples, depth and cut-off of this scene, and recommends settings"
+                "Measures samples, depth, cut-off and adaptive step here, and recommends settings"
             }
             Command::SampleMap => {
                 "Where adaptive sampling (trace.adaptive) spends its rays: white pixels have all samples"
