@@ -29,15 +29,17 @@ enum Source {
         axis: DVec3,
         cone: Cone,
     },
-    /// The corner from which two edges leave.
+    /// The corner from which two edges leave, and the unit vector that stands on it.
     Rectangle {
         corner: DVec3,
         edges: [DVec3; 2],
+        normal: DVec3,
     },
-    /// Middle and two radii at right angles.
+    /// Middle, two radii at right angles, and the unit vector that stands on it.
     Disc {
         center: DVec3,
         radii: [DVec3; 2],
+        normal: DVec3,
     },
     Sphere {
         center: DVec3,
@@ -62,6 +64,8 @@ pub(super) struct Aim<'a> {
     /// What one ray weighs, its cone included; without falloff.
     weight: f64,
     across: Across,
+    /// Unit, stands on the points of a light with an area; zero of any other.
+    normal: DVec3,
 }
 
 /// Over what the points of a light spread.
@@ -95,9 +99,11 @@ impl Lamp {
             LightPlace::Area(Area::Rectangle { center, along, across }) => Source::Rectangle {
                 corner: *center - (*along + *across) / 2.0,
                 edges: [*along, *across],
+                normal: along.normalize().cross(across.normalize()).normalize_or_zero(),
             },
             LightPlace::Area(Area::Disc { center, normal, radius }) => {
-                Source::Disc { center: *center, radii: radii(normal.normalize(), *radius) }
+                let normal = normal.normalize();
+                Source::Disc { center: *center, radii: radii(normal, *radius), normal }
             }
             LightPlace::Area(Area::Sphere { center, radius }) => {
                 Source::Sphere { center: *center, radius: *radius }
@@ -119,7 +125,14 @@ impl Lamp {
     /// The light as seen from a point.
     #[inline(always)]
     pub(super) fn aim(&self, from: DVec3) -> Aim<'_> {
-        let aim = |arm, across| Aim { lamp: self, arm, reach: 0.0, weight: self.share, across };
+        let aim = |arm, across| Aim {
+            lamp: self,
+            arm,
+            reach: 0.0,
+            weight: self.share,
+            across,
+            normal: DVec3::ZERO,
+        };
         match &self.source {
             Source::Point(point) => aim(*point - from, Across::Nothing),
             Source::Direction(to_light) => {
@@ -130,13 +143,30 @@ impl Lamp {
                 let weight = cone.weight(-arm.normalize_or_zero().dot(*axis));
                 Aim { weight, ..aim(arm, Across::Nothing) }
             }
-            Source::Rectangle { corner, edges } => aim(*corner - from, Across::Rectangle(*edges)),
-            Source::Disc { center, radii } => aim(*center - from, Across::Disc(*radii)),
-            Source::Sphere { center, radius } => {
-                let arm = *center - from;
-                let facing = arm.normalize_or(DVec3::Z);
-                aim(arm, Across::Disc(radii(facing, *radius)))
+            Source::Rectangle { corner, edges, normal } => {
+                Aim { normal: *normal, ..aim(*corner - from, Across::Rectangle(*edges)) }
             }
+            Source::Disc { center, radii, normal } => {
+                Aim { normal: *normal, ..aim(*center - from, Across::Disc(*radii)) }
+            }
+            Source::Sphere { center, radius } => self.aim_at_ball(*center - from, *radius),
+        }
+    }
+
+    /// A ball as seen from a point: the disc that its tangents from there touch hides exactly as
+    /// much as it does. From within it is the disc through its middle.
+    #[inline(always)]
+    fn aim_at_ball(&self, arm: DVec3, radius: f64) -> Aim<'_> {
+        let normal = arm.normalize_or(DVec3::Z);
+        let nearer = radius * radius / arm.length_squared();
+        let (nearer, part) = if nearer < 1.0 { (nearer, 1.0 - nearer) } else { (0.0, 1.0) };
+        Aim {
+            lamp: self,
+            arm: arm - arm * nearer,
+            reach: 0.0,
+            weight: if self.falls_off { self.share * part } else { self.share },
+            across: Across::Disc(radii(normal, radius * part.sqrt())),
+            normal,
         }
     }
 }
@@ -156,11 +186,18 @@ impl Aim<'_> {
                 self.arm + u * x + v * y
             }
         };
+        let to_light = arm.normalize_or_zero();
         let weight = match self.lamp.falls_off {
             false => self.weight,
-            true => self.weight * (1.0 / arm.length_squared()).min(MOST_NEAR),
+            true => {
+                let cosine = match self.across {
+                    Across::Nothing => 1.0,
+                    Across::Rectangle(_) | Across::Disc(_) => self.normal.dot(to_light).abs(),
+                };
+                self.weight * cosine * (1.0 / arm.length_squared()).min(MOST_NEAR)
+            }
         };
-        Beam { to_light: arm.normalize_or_zero(), distance: arm.length(), weight: weight as f32 }
+        Beam { to_light, distance: arm.length(), weight: weight as f32 }
     }
 }
 
@@ -252,7 +289,12 @@ mod tests {
                         assert!(share.abs() <= 0.5 + 1e-12);
                     }
                     Area::Disc { .. } => assert!(offset.dot(normal).abs() < 1e-14),
-                    Area::Sphere { .. } => assert!(offset.dot(center - FROM).abs() < 1e-14),
+                    // On the circle of the tangents at most.
+                    Area::Sphere { .. } => {
+                        let arm = center - FROM;
+                        let nearer = -offset.dot(arm.normalize());
+                        assert!((nearer - 0.49 / arm.length()).abs() < 1e-14);
+                    }
                 }
             }
             let reach = match area {
@@ -280,6 +322,22 @@ mod tests {
         let weight = |d: f64| Lamp::new(&point).aim(DVec3::X * d).beam([0.0; 2]).weight;
         assert_eq!([weight(1.0), weight(2.0), weight(10.0)], [1.0, 0.25, 0.01]);
         assert_eq!(weight(1e-30), 1e18);
+    }
+
+    #[test]
+    fn a_panel_that_falls_off_is_as_bright_as_it_looks_wide() {
+        let area = Area::Disc { center: DVec3::ZERO, normal: DVec3::NEG_Z * 3.0, radius: 1e-9 };
+        let panel = Light { place: LightPlace::Area(area), falloff: 1.0, ..Light::new("l") };
+        let weight = |light: &Light, degrees: f64| {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            Lamp::new(light).aim(DVec3::new(sin, 0.0, -cos) * 2.0).beam([0.3, 0.9]).weight
+        };
+        for (degrees, expected) in [(0.0, 0.25), (60.0, 0.125), (120.0, 0.125), (180.0, 0.25)] {
+            assert!((weight(&panel, degrees) - expected).abs() < 1e-6, "{degrees}°");
+        }
+        assert!(weight(&panel, 90.0) < 1e-9);
+        let even = Light { falloff: 0.0, ..panel };
+        assert_eq!([weight(&even, 0.0), weight(&even, 75.0)], [1.0; 2]);
     }
 
     #[test]

@@ -7,7 +7,10 @@ use crate::color::Rgb;
 /// `[lights.NAME]`. A light that is off is traced all the same.
 ///
 /// A surface shows `diffuse · color · intensity · N·L` of every point that shines, and the mean over
-/// the points of a light with an area.
+/// the points of a light with an area. One with an area that falls off has the same radiance
+/// everywhere and in every direction: a point of it counts cos θ · D²/d², θ between the arm and what
+/// stands on the light, so that an area A shows as `diffuse · color · L · F` does, L = π·D²/A times
+/// the intensity and F the form factor of what is seen of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
     /// Unique among the lights.
@@ -77,8 +80,7 @@ pub enum Area {
         /// World units, > 0.
         radius: f64,
     },
-    /// A ball (`sphere`): for every point that it lights, the disc through its middle that faces
-    /// the point.
+    /// A ball (`sphere`): for every point that it lights, the disc in its outline.
     Sphere {
         /// Its middle.
         center: DVec3,

@@ -2,8 +2,8 @@
 //! fast as stratified points allow.
 //!
 //! A point in the plane z = 0 below a horizontal light of area 1 at height 1 that falls off from
-//! distance 1 shows `diffuse` times the mean of N·L/d² over what it sees of the light, which is the
-//! solid angle of that part.
+//! distance 1 shows `diffuse` times the mean of cos θ · N·L/d² over what it sees of the light, which
+//! is π times the form factor of that part.
 
 use glam::{DVec3, dvec3};
 
@@ -15,14 +15,14 @@ use rayforest::scene::{
 use super::super::stage::open;
 use super::solid;
 
-/// The solid angle of a flat polygon seen from the origin (Van Oosterom & Strackee 1983).
-fn solid_angle(corners: &[DVec3]) -> f64 {
-    let [first, rest @ ..] = corners else { return 0.0 };
-    let triangles = rest.windows(2).map(|pair| {
-        let [a, b, c] = [*first, pair[0], pair[1]].map(DVec3::normalize);
-        2.0 * a.dot(b.cross(c)).atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
+/// π times the form factor of a flat polygon seen from the origin in the plane z = 0 (Lambert 1760).
+fn projected(corners: &[DVec3]) -> f64 {
+    let next = corners.iter().cycle().skip(1);
+    let edges = corners.iter().zip(next).map(|(a, b)| {
+        let across = a.cross(*b);
+        across.length().atan2(a.dot(*b)) * across.normalize().z
     });
-    triangles.sum::<f64>().abs()
+    edges.sum::<f64>().abs() / 2.0
 }
 
 /// What is between the point and the light, and what part of the light it leaves.
@@ -107,16 +107,15 @@ fn errors(shown: &[f64], truth: f64) -> (f64, f64) {
 }
 
 #[test]
-fn the_truths_are_those_of_simpler_forms() {
-    let whole = solid_angle(&Edge::Open.seen());
-    assert!((whole - 4.0 * (0.25 / 1.5f64.sqrt()).atan()).abs() < 1e-14);
-    let corner = |x: f64, y: f64| (x * y / (1.0 + x * x + y * y).sqrt()).atan();
-    let straight = 2.0 * (corner(0.5, 0.5) - corner(0.13, 0.5));
-    assert!((solid_angle(&Edge::Straight.seen()) - straight).abs() < 1e-14);
-    // Whole minus what is hidden.
-    let hidden = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.25], [-0.5, -0.45]];
-    let hidden = solid_angle(&hidden.map(|[x, y]| dvec3(x, y, 1.0)));
-    assert!((solid_angle(&Edge::Oblique.seen()) - (whole - hidden)).abs() < 1e-14);
+fn the_truths_are_those_found_with_twelve_digits() {
+    for (edge, form_factor) in [
+        (Edge::Open, 0.239456470461),
+        (Edge::Straight, 0.084361533747),
+        (Edge::Oblique, 0.145481926839),
+    ] {
+        let found = projected(&edge.seen()) / std::f64::consts::PI;
+        assert!((found - form_factor).abs() < 1e-12, "{found} {form_factor}");
+    }
 }
 
 #[test]
@@ -126,7 +125,7 @@ fn penumbrae_are_unbiased_and_converge() {
         ("straight", Edge::Straight, -0.7),
         ("oblique", Edge::Oblique, -0.7),
     ] {
-        let truth = solid_angle(&edge.seen());
+        let truth = projected(&edge.seen());
         // Rays of one sample of the camera, and one ray each of many.
         for split in [|n: u32| [1, n], |n: u32| [n, 1]] {
             let mut rms = Vec::new();
@@ -145,20 +144,22 @@ fn penumbrae_are_unbiased_and_converge() {
 #[test]
 fn a_wrong_truth_is_seen() {
     let pixels = shown(scene(&Edge::Straight, square(), [1, 16]));
-    let truth = solid_angle(&Edge::Straight.seen());
+    let truth = projected(&Edge::Straight.seen());
     assert!(errors(&pixels, truth).0 < 3.0 && errors(&pixels, truth * 1.01).0 > 3.0);
 }
 
-/// A disc of radius r at height 1 around the vertical: 2π(1 − 1/√(1+r²)) is its solid angle; of a ball
-/// there, its disc shows.
+/// A disc of radius r at height 1 around the vertical: r²/(1 + r²) is its form factor, and r² that of a
+/// ball there.
 #[test]
-fn discs_and_balls_are_as_bright_as_their_solid_angle() {
+fn discs_and_balls_are_as_bright_as_their_form_factors() {
     let radius = 0.6f64;
     // The mean over an area of πr².
-    let truth = 2.0 * (1.0 - 1.0 / (1.0 + radius * radius).sqrt()) / (radius * radius);
-    for area in [
-        Area::Disc { center: DVec3::Z, normal: DVec3::Z * 3.0, radius },
-        Area::Sphere { center: DVec3::Z, radius },
+    for (area, truth) in [
+        (
+            Area::Disc { center: DVec3::Z, normal: DVec3::Z * 3.0, radius },
+            1.0 / (1.0 + radius * radius),
+        ),
+        (Area::Sphere { center: DVec3::Z, radius }, 1.0),
     ] {
         let place = LightPlace::Area(area.clone());
         let (off, rms) = errors(&shown(scene(&Edge::Open, place, [1, 64])), truth);
