@@ -58,10 +58,37 @@ struct Base {
 pub struct DocumentError {
     /// Several lines, for the person.
     pub message: String,
-    /// A mesh file that was not found, as written in the scene: the person may locate it.
-    pub missing: Option<String>,
+    /// A file that was not found: the person may locate it.
+    pub missing: Option<Missing>,
     /// The file was changed by another program: [`Save::overwrite`] replaces it all the same.
     pub changed_on_disk: bool,
+}
+
+/// A file that a scene names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Missing {
+    /// What it holds.
+    pub kind: FileKind,
+    /// As written in the scene.
+    pub file: String,
+}
+
+/// What a file holds that a scene names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileKind {
+    /// Triangles.
+    Mesh,
+    /// A picture to lay on a surface or around the scene.
+    Image,
+}
+
+impl fmt::Display for FileKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            FileKind::Mesh => "mesh",
+            FileKind::Image => "image",
+        })
+    }
 }
 
 impl DocumentError {

@@ -1,4 +1,4 @@
-//! Opens scene files, also when their mesh files lie elsewhere.
+//! Opens scene files, also when the mesh and image files that they name lie elsewhere.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -8,9 +8,8 @@ use toml::de::DeTable;
 use super::history::History;
 use super::relocate::relative;
 use super::save::file_name;
-use super::{Base, Document, DocumentError};
-use crate::scene::read;
-use crate::scene::{Scene, Shape, mesh};
+use super::{Base, Document, DocumentError, FileKind, Missing};
+use crate::scene::{Scene, mesh, read, texture};
 
 impl Document {
     /// A document without a file, from a template or the built-in scene.
@@ -39,8 +38,9 @@ impl Document {
         Document::open_relocated(path, &[])
     }
 
-    /// Opens a scene file with mesh files that were found elsewhere, by their missing names: the text,
-    /// so edited, counts as unsaved. Others that are missing are also sought beside those found.
+    /// Opens a scene file with mesh and image files that were found elsewhere, by their missing names:
+    /// the text, so edited, counts as unsaved. Others that are missing are also sought beside those
+    /// found.
     pub fn open_relocated(
         path: &Path,
         found: &[(String, PathBuf)],
@@ -56,7 +56,7 @@ impl Document {
         let folder = path.parent().unwrap_or(Path::new(""));
         let text = String::from_utf8_lossy(&bytes);
         let found = replacements(&text, folder, found);
-        let known = known(&found)?;
+        let known = known(&text, &found)?;
         let scene = read::bytes(&bytes, path, known)
             .map_err(|error| with_missing(error.to_string(), &text, folder, &found))?;
         let edited = replaced(&scene, &found, folder);
@@ -69,13 +69,13 @@ impl Document {
     }
 }
 
-/// Mesh files as the scene names them, and where they are instead.
+/// Files as the scene names them, and where they are instead.
 type Found = Vec<(String, PathBuf)>;
 
 /// Those that were given, and missing ones that lie beside them.
 pub(super) fn replacements(text: &str, folder: &Path, given: &[(String, PathBuf)]) -> Found {
     let mut found = given.to_vec();
-    for file in mesh_files(text) {
+    for Missing { kind: _, file } in named_files(text) {
         if folder.join(&file).exists() || found.iter().any(|(known, _)| *known == file) {
             continue;
         }
@@ -88,59 +88,81 @@ pub(super) fn replacements(text: &str, folder: &Path, given: &[(String, PathBuf)
     found
 }
 
-/// Reads the mesh files that were found.
-pub(super) fn known(found: &Found) -> Result<read::Known, DocumentError> {
+/// Reads the files that were found.
+pub(super) fn known(text: &str, found: &Found) -> Result<read::Known, DocumentError> {
     let mut known = read::Known::default();
-    for (file, place) in found {
-        let mesh = mesh::read_obj(place).map_err(DocumentError::new)?;
-        known.meshes.insert(file.clone(), Arc::new(mesh));
+    for Missing { kind, file } in named_files(text) {
+        let Some((_, place)) = found.iter().find(|(missing, _)| *missing == file) else { continue };
+        match kind {
+            FileKind::Mesh => {
+                let mesh = mesh::read_obj(place).map_err(DocumentError::new)?;
+                known.meshes.insert(file, Arc::new(mesh));
+            }
+            FileKind::Image => {
+                let image = texture::read(place).map_err(DocumentError::new)?;
+                known.images.insert(file, Arc::new(image));
+            }
+        }
     }
     Ok(known)
 }
 
-/// The scene with the mesh files named by where they were found.
+/// The scene with the files named by where they were found.
 pub(super) fn replaced(scene: &Scene, found: &Found, folder: &Path) -> Scene {
     let mut scene = scene.clone();
-    for solid in &mut scene.solids {
-        if let Shape::Mesh { file, .. } = &mut solid.shape
-            && let Some((_, place)) = found.iter().find(|(missing, _)| missing == file)
+    scene.each_file(&mut |file| {
+        if let Some((_, place)) = found.iter().find(|(missing, _)| missing == file)
             && let Some(name) = relative(place, folder)
         {
             *file = name;
         }
-    }
+    });
     scene
 }
 
-/// The error with the first mesh file that is not there, if that may be the cause.
+/// The error with the first mesh or image file that is not there, if that may be the cause.
 pub(super) fn with_missing(
     mut message: String,
     text: &str,
     folder: &Path,
     found: &Found,
 ) -> DocumentError {
-    let is_missing =
-        |file: &String| !folder.join(file).exists() && found.iter().all(|(known, _)| known != file);
-    let missing = mesh_files(text).into_iter().find(is_missing);
-    if let Some(file) = &missing {
+    let is_missing = |Missing { kind: _, file }: &Missing| {
+        !folder.join(file).exists() && found.iter().all(|(known, _)| known != file)
+    };
+    let missing = named_files(text).into_iter().find(is_missing);
+    if let Some(Missing { kind, file }) = &missing {
         let place = folder.join(file);
         message.push_str(&format!(
-            "\nthe mesh file {file} was sought at {}\n  help: put it there, or say where it is",
+            "\nthe {kind} file {file} was sought at {}\n  help: put it there, or say where it is",
             place.display()
         ));
     }
     DocumentError { missing, ..DocumentError::new(message) }
 }
 
-/// The mesh files that a text names, whatever else is wrong with it.
-fn mesh_files(text: &str) -> Vec<String> {
+/// The mesh and image files that a text names, whatever else is wrong with it.
+fn named_files(text: &str) -> Vec<Missing> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let (root, _) = DeTable::parse_recoverable(text);
-    let solids = root.get_ref().get("solids").and_then(|solids| solids.get_ref().as_table());
-    let file = |(_, solid): (_, &toml::Spanned<toml::de::DeValue<'_>>)| {
-        let mesh = solid.get_ref().as_table()?.get("mesh")?;
-        let file = mesh.get_ref().as_table()?.get("file")?;
-        file.get_ref().as_str().map(str::to_owned)
-    };
-    solids.into_iter().flat_map(DeTable::iter).filter_map(file).collect()
+    let mut files = Vec::new();
+    gather(root.get_ref(), &mut files);
+    files
+}
+
+/// Adds `mesh = { file = … }` and `image = { file = … }`, wherever they stand.
+fn gather(table: &DeTable<'_>, files: &mut Vec<Missing>) {
+    for (key, value) in table {
+        let Some(inner) = value.get_ref().as_table() else { continue };
+        let kind = match key.get_ref().as_ref() {
+            "mesh" => Some(FileKind::Mesh),
+            "image" => Some(FileKind::Image),
+            _ => None,
+        };
+        let file = inner.get("file").and_then(|file| file.get_ref().as_str());
+        match kind.zip(file) {
+            Some((kind, file)) => files.push(Missing { kind, file: file.to_owned() }),
+            None => gather(inner, files),
+        }
+    }
 }

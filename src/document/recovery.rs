@@ -185,7 +185,7 @@ impl Found {
         let text = kept["scene"].as_str().ok_or_else(unreadable)?;
         let folder = self.original.as_deref().map_or(Path::new("."), folder_of);
         let found = replacements(text, folder, found);
-        let scene = read::text_with(text, &self.file, known(&found)?)
+        let scene = read::text_with(text, &self.file, known(text, &found)?)
             .map_err(|error| with_missing(error.to_string(), text, folder, &found))?;
         let mut edited = replaced(&scene, &found, folder);
         rename_files(&mut edited, &kept["mesh_names"]);

@@ -235,7 +235,8 @@ fn a_missing_mesh_is_named_and_can_be_located() {
     let moved = folder.path().join("moved.obj");
     std::fs::rename(folder.path().join("parts/m.obj"), &moved).unwrap();
     let error = Document::open(&path).err().unwrap();
-    assert_eq!(error.missing.as_deref(), Some("parts/m.obj"));
+    let missing = Missing { kind: FileKind::Mesh, file: "parts/m.obj".into() };
+    assert_eq!(error.missing, Some(missing));
     let place = folder.path().join("parts/m.obj");
     assert!(error.message.contains(&format!("was sought at {}", place.display())), "{error}");
     assert!(error.message.contains("s.toml:5:17: "), "{error}");
@@ -250,6 +251,34 @@ fn a_missing_mesh_is_named_and_can_be_located() {
     let error = Document::open(&path).err().unwrap();
     assert!(error.missing.is_none() && error.message.contains("s.toml:3:7: "), "{error}");
     assert!(Document::open(Path::new("no/such.toml")).is_err());
+}
+
+#[test]
+fn missing_images_are_named_and_one_that_is_located_leads_to_those_beside_it() {
+    const IMAGES: &str = r#"version = 1
+[camera]
+eye = [3, -1, 1]
+[background]
+image = { file = "sky.png", tint = 1 }
+[materials.m]
+texture = { image = { file = "wood.png", tint = 1, size = 1 } }
+bump = { image = { file = "wood.png", height = 0.1, size = 1 } }
+"#;
+    let (folder, path) = folder(IMAGES);
+    let pixel = image::RgbImage::from_pixel(1, 1, image::Rgb([40, 80, 160]));
+    std::fs::create_dir(folder.path().join("moved")).unwrap();
+    for name in ["moved/sky.png", "moved/wood.png"] {
+        pixel.save(folder.path().join(name)).unwrap();
+    }
+    let error = Document::open(&path).err().unwrap();
+    let missing = Missing { kind: FileKind::Image, file: "sky.png".into() };
+    assert_eq!(error.missing, Some(missing), "{error}");
+    assert!(error.message.contains("the image file sky.png was sought at"), "{error}");
+    let place = folder.path().join("moved/sky.png");
+    let document = Document::open_relocated(&path, &[("sky.png".into(), place)]).unwrap();
+    let text = document.save(&path).unwrap().text;
+    let expected = IMAGES.replace("sky.png", "moved/sky.png").replace("wood.png", "moved/wood.png");
+    assert_eq!(text, expected);
 }
 
 #[test]

@@ -17,7 +17,9 @@ pub enum Purpose {
     /// A picture file to write.
     Export,
     /// A mesh that was not found.
-    Locate,
+    LocateMesh,
+    /// An image that was not found.
+    LocateImage,
     /// An image to show on a surface or as the background.
     Image,
 }
@@ -29,7 +31,8 @@ impl Purpose {
             Purpose::Open => "Open a scene",
             Purpose::Save => "Save the scene",
             Purpose::Export => "Export the picture",
-            Purpose::Locate => "Find the mesh",
+            Purpose::LocateMesh => "Find the mesh",
+            Purpose::LocateImage => "Find the image",
             Purpose::Image => "Pick an image",
         }
     }
@@ -44,8 +47,8 @@ impl Purpose {
         match self {
             Purpose::Open | Purpose::Save => ("Rayforest scenes", &["toml"]),
             Purpose::Export => ("Pictures", &["png", "exr"]),
-            Purpose::Locate => ("Meshes", &["obj"]),
-            Purpose::Image => ("Images", &["png", "jpg", "jpeg", "hdr"]),
+            Purpose::LocateMesh => ("Meshes", &["obj"]),
+            Purpose::LocateImage | Purpose::Image => ("Images", &["png", "jpg", "jpeg", "hdr"]),
         }
     }
 }

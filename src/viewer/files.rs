@@ -15,7 +15,7 @@ use super::inspector::Selection;
 use super::paints::ImageFor;
 use super::path_field::PathField;
 use crate::document::recovery::Found;
-use crate::document::{Document, DocumentError, Save, TEMPLATES};
+use crate::document::{Document, DocumentError, Missing, Save, TEMPLATES};
 use crate::scene::Scene;
 use crate::scene::texture::{Image, ImageError};
 use crate::session::live::Export;
@@ -80,8 +80,8 @@ pub(super) enum Modal {
     Export(ExportForm),
     /// A file, typed.
     Path(PathField, For),
-    /// A scene that could not be opened; the second part names a mesh that may be located.
-    BadScene { source: Source, located: Located, message: String, missing: Option<String> },
+    /// A scene that could not be opened; the last part names a file that may be located.
+    BadScene { source: Source, located: Located, message: String, missing: Option<Missing> },
     /// The file to be replaced was changed by another program.
     Changed { save: Save, message: String, next: Option<Next> },
     /// Work of a run that ended without saving it.

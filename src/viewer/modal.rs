@@ -7,8 +7,8 @@ use super::dialog::Purpose;
 use super::export::ExportChoice;
 use super::files::{For, Modal, Next, Source};
 use super::path_field::Choice;
-use crate::document::Save;
 use crate::document::recovery::Found;
+use crate::document::{FileKind, Missing, Save};
 
 /// What the person answered to unsaved work.
 enum Unsaved {
@@ -52,15 +52,19 @@ impl App {
                 let mut stays = true;
                 bad_scene_ui(ui, &message);
                 ui.horizontal(|ui| {
-                    if let Some(mesh) = &missing
+                    if let Some(Missing { kind, file }) = &missing
                         && ui
                             .button("Locate…")
-                            .on_hover_text(format!("Shows where {mesh} is now"))
+                            .on_hover_text(format!("Shows where {file} is now"))
                             .clicked()
                     {
                         let (source, located) = (source.clone(), located.clone());
-                        let what = For::Locate { source, located, missing: mesh.clone() };
-                        self.ask(ui.ctx(), Purpose::Locate, String::new(), what);
+                        let what = For::Locate { source, located, missing: file.clone() };
+                        let purpose = match kind {
+                            FileKind::Mesh => Purpose::LocateMesh,
+                            FileKind::Image => Purpose::LocateImage,
+                        };
+                        self.ask(ui.ctx(), purpose, String::new(), what);
                         stays = false;
                     }
                     let about = "Goes on with the scene that is open";

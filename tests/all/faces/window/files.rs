@@ -98,6 +98,27 @@ fn a_missing_mesh_is_named_and_can_be_located() {
 }
 
 #[test]
+fn a_missing_image_is_named_and_can_be_located() {
+    let image = "texture = { image = { file = \"w.png\", tint = 1, size = 1 } }";
+    let lost = SCENE.replace("color = [0.9, 0.9, 0.95]", image);
+    assert!(lost.contains(image));
+    let mut window = with_second("lost.toml", &lost, &["lost.toml", "far/away.png"]);
+    std::fs::create_dir(window.file("far")).unwrap();
+    let orange = image::RgbImage::from_pixel(2, 2, image::Rgb([250, 120, 10]));
+    orange.save(window.file("far/away.png")).unwrap();
+    window.key(Modifiers::COMMAND, Key::O);
+    window.until_text("the image file w.png was sought at");
+    window.click("Locate…");
+    let lost_path = window.file("lost.toml");
+    window.until("the scene is open", |app| app.document().path() == Some(&lost_path));
+    window.until_exact();
+    window.save();
+    let text = std::fs::read_to_string(&lost_path).unwrap();
+    assert_eq!(text, lost.replace("w.png", "far/away.png"));
+    assert!(rgb(&window.picture()) == rendered(window.folder.path(), "lost.toml"));
+}
+
+#[test]
 fn saving_to_another_folder_takes_relative_meshes_along() {
     let mut window = with_second("mesh.toml", MESH_SCENE, &["mesh.toml", "deep/copy"]);
     std::fs::write(window.file("m.obj"), MESH).unwrap();
