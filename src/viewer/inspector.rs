@@ -256,7 +256,10 @@ fn things_ui(
                 outcome.command = Some(command);
             }
         }
-        let Selection::Material(_) = selection else { return };
+    });
+    let Selection::Material(_) = selection else { return };
+    // A line of its own: what stands below must not move when a click in the picture gives it a cost.
+    ui.horizontal_wrapped(|ui| {
         let offer = subject.offer(Command::Assign, scene);
         let button = Button::new(offer.name.clone());
         if offer_ui(ui, Command::Assign, button, &offer).clicked() {
