@@ -80,6 +80,7 @@
 //! every file and holds them to it.
 
 // ground
+pub mod clock;
 pub mod color;
 pub mod math;
 pub mod progress;

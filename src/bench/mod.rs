@@ -2,6 +2,7 @@
 
 mod classes;
 mod memory;
+pub mod rays;
 
 use std::time::Instant;
 

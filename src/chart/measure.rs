@@ -4,6 +4,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::advice::{best, mark_front};
 use super::{Advice, Chart, Cost, Deviation, Goal, Point, SETTINGS, Setting, Sweep, text_of};
+use crate::clock::thread_seconds;
 use crate::color::srgb_code;
 use crate::film::Film;
 use crate::geometry::Geometry;
@@ -176,29 +177,14 @@ impl Tracer<'_> {
         let still = Still { scene, geometry, pool, memory: *memory };
         let before = processor_seconds(pool);
         let (film, report) = still.film(progress)?;
-        let seconds = match (before, processor_seconds(pool)) {
-            (Some(before), Some(after)) => after - before,
-            _ => report.seconds,
-        };
+        let seconds = processor_seconds(pool) - before;
         Ok((film, Cost { seconds, runs: 1, rays: report.rays.total() }))
     }
 }
 
-/// Processor time that the threads of a pool have taken so far, where the platform tells.
-fn processor_seconds(pool: &ThreadPool) -> Option<f64> {
-    #[cfg(unix)]
-    {
-        let times = pool.broadcast(|_| {
-            let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
-            time.tv_sec as f64 + time.tv_nsec as f64 / 1e9
-        });
-        Some(times.into_iter().sum())
-    }
-    #[cfg(not(unix))]
-    {
-        let _ = pool;
-        None
-    }
+/// Processor time that the threads of a pool have taken so far.
+fn processor_seconds(pool: &ThreadPool) -> f64 {
+    pool.broadcast(|_| thread_seconds()).into_iter().sum()
 }
 
 /// How far a film is from the truth; `gain` is the exposure's factor. Of films of one cut.

@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Parser, Subcommand};
 use serde_json::Value;
 
+use crate::bench;
 use crate::color::Rgb;
 use crate::film::write::check_writable;
 use crate::scene::energy::{Overbright, overbright};
@@ -67,6 +68,10 @@ struct Bench {
     /// Measure the window instead: from an edit to its picture, and what a turn of its loop costs.
     #[arg(long)]
     window: bool,
+    /// Measure rays alone, on one thread: camera, mirror and shadow rays of the scenes, then what the
+    /// hierarchy gains for 10 to 1 000 000 spheres.
+    #[arg(long, conflicts_with = "window")]
+    rays: bool,
     /// Write the figures to this file; `-` for standard output.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -177,14 +182,22 @@ impl Bench {
         for (file, scene, options) in scenes {
             let name = file.file_stem().map_or_else(String::new, |n| n.to_string_lossy().into());
             say(&format!("measuring {name} …"));
-            rows.push(match self.window {
-                true => measure_window(&name, &scene, options)?,
-                false => {
-                    let row = crate::bench::measure(&name, scene, options).map_err(Failure::job)?;
-                    say(&crate::bench::summary(&row));
-                    row
-                }
+            rows.push(if self.window {
+                measure_window(&name, &scene, options)?
+            } else if self.rays {
+                let row = bench::rays::measure(&name, &scene);
+                say(&bench::rays::summary(&row));
+                row
+            } else {
+                let row = bench::measure(&name, scene, options).map_err(Failure::job)?;
+                say(&bench::summary(&row));
+                row
             });
+        }
+        if self.rays {
+            let row = bench::rays::growth(6);
+            say(&bench::rays::summary(&row));
+            rows.push(row);
         }
         let text = serde_json::to_string_pretty(&rows).map_err(Failure::job)?;
         match self.json {

@@ -265,10 +265,9 @@ texture = { image = { file = "wood.png", tint = 1, size = 1 } }
 bump = { image = { file = "wood.png", height = 0.1, size = 1 } }
 "#;
     let (folder, path) = folder(IMAGES);
-    let pixel = image::RgbImage::from_pixel(1, 1, image::Rgb([40, 80, 160]));
     std::fs::create_dir(folder.path().join("moved")).unwrap();
     for name in ["moved/sky.png", "moved/wood.png"] {
-        pixel.save(folder.path().join(name)).unwrap();
+        std::fs::write(folder.path().join(name), include_bytes!("../../assets/globe.png")).unwrap();
     }
     let error = Document::open(&path).err().unwrap();
     let missing = Missing { kind: FileKind::Image, file: "sky.png".into() };

@@ -143,6 +143,13 @@ impl Geometry {
         query.hit()
     }
 
+    /// [`Geometry::closest_hit`] by asking every primitive, at the time 0.
+    pub fn closest_hit_of_all(&self, ray: &Ray) -> Option<Hit> {
+        let mut query = Closest::new();
+        self.traverse_all(0.0, ray, None, &mut query);
+        query.hit()
+    }
+
     /// What stands between the ray's origin and a light at `0 < t < t_max`.
     ///
     /// Returns the solid of an opaque surface if there is one (`opaque` is indexed by solid).

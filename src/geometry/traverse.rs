@@ -302,7 +302,6 @@ impl Geometry {
     }
 
     /// Offers every crossing of every primitive at a time: the truth that the hierarchy is held to.
-    #[cfg(test)]
     pub(super) fn traverse_all<Q: Query>(
         &self,
         time: f64,

@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use super::dialog::ScriptedDialogs;
 use super::{App, Folders, Setup};
 use crate::bench::Spread;
+use crate::clock::thread_seconds;
 use crate::scene::Scene;
 use crate::session::Options;
 use crate::session::live::{Live, Stage};
@@ -132,10 +133,10 @@ fn turns(file: &Path, options: Options, folder: &Path) -> Turns {
     let start = Instant::now();
     for turn in 0.. {
         let input = input(turn, start);
-        let (processor_before, wall_before) = (processor_ms(), Instant::now());
+        let (processor_before, wall_before) = (thread_seconds(), Instant::now());
         let output = ctx.run_ui(input, |ui| app.ui(ui));
         let shapes = ctx.tessellate(output.shapes, output.pixels_per_point);
-        let spent = processor_ms() - processor_before;
+        let spent = (thread_seconds() - processor_before) * 1e3;
         drop(shapes);
         // The first turns lay fonts out and open the scene.
         if turn > 10 {
@@ -160,18 +161,5 @@ fn input(turn: u64, start: Instant) -> RawInput {
         time: Some(start.elapsed().as_secs_f64()),
         events: vec![Event::PointerMoved(pos2(x, y))],
         ..RawInput::default()
-    }
-}
-
-/// Processor time of this thread in milliseconds; wall time where the platform does not tell.
-fn processor_ms() -> f64 {
-    #[cfg(unix)]
-    {
-        let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
-        time.tv_sec as f64 * 1e3 + time.tv_nsec as f64 / 1e6
-    }
-    #[cfg(not(unix))]
-    {
-        std::time::SystemTime::UNIX_EPOCH.elapsed().map_or(0.0, |t| t.as_secs_f64() * 1e3)
     }
 }
