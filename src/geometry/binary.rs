@@ -1,12 +1,18 @@
 //! The binary tree that the wide hierarchy is collapsed from: surface area heuristic, swept for few
-//! primitives and binned for many.
+//! primitives and binned for many (Wald, *On fast construction of SAH-based BVHs*, 2007).
+//!
+//! A large range is read twice per split: into bins along all axes at once, and when it is parted,
+//! which also finds the bounds of the parts. A small one is sorted once along every axis; its parts
+//! take their orders over.
 
 use crate::progress::{Cancelled, Progress};
 
 /// Above this many primitives splits are looked for between bins instead of all primitives.
-const SWEEP_MAX: usize = 256;
+const SWEEP_MAX: usize = 32;
 /// Bins per axis.
 const BINS: usize = 16;
+/// A swept split must cost less than this share of no split.
+const LEAST_SAVING: f32 = 0.9999;
 /// From this depth on ranges are halved by count, so that no input makes the tree deep.
 const HALVE_FROM_DEPTH: u32 = 36;
 
@@ -26,8 +32,8 @@ impl Aabb {
     /// The smallest box around both.
     pub(super) fn union(&self, other: &Aabb) -> Aabb {
         Aabb {
-            lo: std::array::from_fn(|k| self.lo[k].min(other.lo[k])),
-            hi: std::array::from_fn(|k| self.hi[k].max(other.hi[k])),
+            lo: std::array::from_fn(|k| lesser(self.lo[k], other.lo[k])),
+            hi: std::array::from_fn(|k| -lesser(-self.hi[k], -other.hi[k])),
         }
     }
 
@@ -38,8 +44,13 @@ impl Aabb {
     }
 
     /// Twice the middle.
-    fn middle(&self, axis: usize) -> f32 {
-        self.lo[axis] + self.hi[axis]
+    fn middle(&self) -> [f32; 3] {
+        std::array::from_fn(|k| self.lo[k] + self.hi[k])
+    }
+
+    /// The smallest box around this one and a point.
+    fn with(&self, point: [f32; 3]) -> Aabb {
+        self.union(&Aabb { lo: point, hi: point })
     }
 }
 
@@ -65,148 +76,356 @@ pub(super) struct BinaryTree {
     pub(super) order: Vec<u32>,
 }
 
+/// A primitive while the tree is built.
+#[derive(Clone, Copy)]
+struct Entry {
+    bounds: Aabb,
+    /// Index of the box.
+    item: u32,
+}
+
+/// A range of entries that is to be split.
+struct Open {
+    /// Its node.
+    node: usize,
+    depth: u32,
+    /// Around the doubled middles of its entries.
+    middles: Aabb,
+    /// Whether `Builder::sorted` holds its places in order.
+    is_sorted: bool,
+}
+
+/// What is known of a part when a range has been split.
+struct Part {
+    bounds: Aabb,
+    middles: Aabb,
+}
+
+impl Part {
+    const EMPTY: Part = Part { bounds: Aabb::EMPTY, middles: Aabb::EMPTY };
+
+    fn add(&mut self, bounds: &Aabb) {
+        self.bounds = self.bounds.union(bounds);
+        self.middles = self.middles.with(bounds.middle());
+    }
+}
+
 impl BinaryTree {
     /// Builds down to single primitives. Iterative, deterministic, and of bounded depth whatever the
     /// boxes are.
     pub(super) fn build(boxes: &[Aabb], progress: &Progress) -> Result<BinaryTree, Cancelled> {
-        let mut tree = BinaryTree { nodes: Vec::new(), order: (0..boxes.len() as u32).collect() };
+        let mut tree = BinaryTree::default();
         if boxes.is_empty() {
             return Ok(tree);
         }
-        tree.nodes.reserve(2 * boxes.len());
-        tree.push(boxes, 0, boxes.len());
-        let mut splitter = Splitter { boxes, areas: Vec::new() };
-        let mut open = vec![(0, 0)];
-        while let Some((node, depth)) = open.pop() {
+        tree.nodes.reserve_exact(2 * boxes.len());
+        let mut builder = Builder::new(boxes);
+        let mut all = Part::EMPTY;
+        boxes.iter().for_each(|bounds| all.add(bounds));
+        tree.push(&all, 0, boxes.len());
+        let mut open = vec![Open { node: 0, depth: 0, middles: all.middles, is_sorted: false }];
+        while let Some(Open { node, depth, middles, is_sorted }) = open.pop() {
             progress.check()?;
             let BinaryNode { bounds: _, begin, end, left: _ } = tree.nodes[node];
             let (begin, end) = (begin as usize, end as usize);
             if end - begin == 1 {
                 continue;
             }
-            let count = splitter.split(&mut tree.order[begin..end], depth);
-            let left = tree.push(boxes, begin, begin + count);
-            tree.push(boxes, begin + count, end);
+            let small = end - begin <= SWEEP_MAX;
+            if small && !is_sorted {
+                builder.sort(begin, end);
+            }
+            let (count, parts) = match small {
+                true => builder.sweep(begin, end, depth),
+                false => builder.bin(begin, end, depth, &middles),
+            };
+            let left = tree.push(&parts[0], begin, begin + count);
+            tree.push(&parts[1], begin + count, end);
             tree.nodes[node].left = left as u32;
-            open.extend([(left + 1, depth + 1), (left, depth + 1)]);
+            let opened = |k: usize| Open {
+                node: left + k,
+                depth: depth + 1,
+                middles: parts[k].middles,
+                is_sorted: small,
+            };
+            open.extend([opened(1), opened(0)]);
         }
+        tree.order = builder.order();
         Ok(tree)
     }
 
-    fn push(&mut self, boxes: &[Aabb], begin: usize, end: usize) -> usize {
-        let bounds = self.order[begin..end]
-            .iter()
-            .fold(Aabb::EMPTY, |bounds, i| bounds.union(&boxes[*i as usize]));
+    fn push(&mut self, part: &Part, begin: usize, end: usize) -> usize {
+        let bounds = part.bounds;
         self.nodes.push(BinaryNode { bounds, begin: begin as u32, end: end as u32, left: 0 });
         self.nodes.len() - 1
     }
 }
 
-/// Finds splits; keeps its scratch.
-struct Splitter<'a> {
-    boxes: &'a [Aabb],
+/// The entries in the tree's order, as far as it is known, and scratch.
+struct Builder {
+    entries: Vec<Entry>,
+    /// Per axis: in ranges that are swept, places of entries in the order of their middles.
+    sorted: [Vec<u32>; 3],
+    /// Of the part on the right while a range is parted.
+    right: Vec<Entry>,
+    right_places: Vec<u32>,
+    /// By place: whether a swept entry goes left.
+    goes_left: Vec<bool>,
     areas: Vec<f32>,
 }
 
-impl Splitter<'_> {
-    /// Reorders two or more primitives and returns how many go left, at least one on each side.
-    fn split(&mut self, order: &mut [u32], depth: u32) -> usize {
-        if depth >= HALVE_FROM_DEPTH {
-            return order.len() / 2;
+impl Builder {
+    fn new(boxes: &[Aabb]) -> Builder {
+        let entry = |(bounds, item): (&Aabb, u32)| Entry { bounds: *bounds, item };
+        Builder {
+            entries: boxes.iter().zip(0..).map(entry).collect(),
+            sorted: std::array::from_fn(|_| (0..boxes.len() as u32).collect()),
+            right: Vec::new(),
+            right_places: Vec::new(),
+            goes_left: vec![false; boxes.len()],
+            areas: Vec::new(),
         }
-        let count = if order.len() <= SWEEP_MAX { self.sweep(order) } else { self.bin(order) };
-        if count == 0 || count == order.len() { order.len() / 2 } else { count }
     }
 
-    fn sort(&self, order: &mut [u32], axis: usize) {
-        let key = |i: u32| self.boxes[i as usize].middle(axis);
-        order.sort_unstable_by(|a, b| key(*a).total_cmp(&key(*b)).then(a.cmp(b)));
+    /// The items in the tree's order.
+    fn order(&self) -> Vec<u32> {
+        self.sorted[0].iter().map(|place| self.entries[*place as usize].item).collect()
     }
 
-    /// The best of all splits along all axes; leaves the order sorted along the best axis.
-    fn sweep(&mut self, order: &mut [u32]) -> usize {
-        if order.len() == 2 {
-            return 1;
-        }
-        let (mut best_cost, mut best) = (f32::INFINITY, (0, order.len() / 2));
-        let mut sorted_by = 0;
+    /// Sorts the places of a range along every axis; of equal middles the lower item comes first.
+    fn sort(&mut self, begin: usize, end: usize) {
         for axis in 0..3 {
-            self.sort(order, axis);
-            sorted_by = axis;
-            self.areas.clear();
-            let mut bounds = Aabb::EMPTY;
-            for i in order.iter().rev() {
-                bounds = bounds.union(&self.boxes[*i as usize]);
-                self.areas.push(bounds.area());
-            }
-            let mut bounds = Aabb::EMPTY;
-            for (count, i) in (1..order.len()).zip(order.iter()) {
-                bounds = bounds.union(&self.boxes[*i as usize]);
-                let rest = order.len() - count;
-                let cost = bounds.area() * count as f32 + self.areas[rest - 1] * rest as f32;
-                if cost < best_cost {
-                    (best_cost, best) = (cost, (axis, count));
+            let key = |place: &u32| {
+                let Entry { bounds, item } = &self.entries[*place as usize];
+                (ordered(bounds.lo[axis] + bounds.hi[axis]), *item)
+            };
+            self.sorted[axis][begin..end].sort_unstable_by_key(key);
+        }
+    }
+
+    /// Parts a sorted range at the best of all places along all axes; at least one goes to each side.
+    fn sweep(&mut self, begin: usize, end: usize, depth: u32) -> (usize, [Part; 2]) {
+        let total = end - begin;
+        let whole = self.entries[begin..end].iter();
+        let whole = whole.fold(Aabb::EMPTY, |all, entry| all.union(&entry.bounds));
+        // What does not even save this is halved by number.
+        let (mut best_cost, mut best) =
+            (whole.area() * total as f32 * LEAST_SAVING, (0, total / 2));
+        if total > 2 && depth < HALVE_FROM_DEPTH {
+            for axis in 0..3 {
+                let places = &self.sorted[axis][begin..end];
+                let bounds_of = |place: &u32| &self.entries[*place as usize].bounds;
+                self.areas.clear();
+                let mut bounds = Aabb::EMPTY;
+                for place in places.iter().rev() {
+                    bounds = bounds.union(bounds_of(place));
+                    self.areas.push(bounds.area());
+                }
+                let mut bounds = Aabb::EMPTY;
+                for (count, place) in (1..total).zip(places) {
+                    bounds = bounds.union(bounds_of(place));
+                    let rest = total - count;
+                    let cost = bounds.area() * count as f32 + self.areas[rest - 1] * rest as f32;
+                    if cost < best_cost {
+                        (best_cost, best) = (cost, (axis, count));
+                    }
                 }
             }
         }
-        if sorted_by != best.0 {
-            self.sort(order, best.0);
+        let (axis, count) = best;
+        let mut parts = [Part::EMPTY, Part::EMPTY];
+        for (k, place) in self.sorted[axis][begin..end].iter().enumerate() {
+            let is_left = k < count;
+            self.goes_left[*place as usize] = is_left;
+            let part = &mut parts[usize::from(!is_left)];
+            part.bounds = part.bounds.union(&self.entries[*place as usize].bounds);
         }
-        best.1
+        for other in (0..3).filter(|other| *other != axis) {
+            let places = &mut self.sorted[other][begin..end];
+            part_by(places, &mut self.right_places, |place| self.goes_left[*place as usize]);
+        }
+        (count, parts)
     }
 
-    /// The best split between bins of equal width; 0 if all middles coincide.
-    fn bin(&self, order: &mut [u32]) -> usize {
-        let (mut best_cost, mut best) = (f32::INFINITY, None);
-        for axis in 0..3 {
-            let Some(binning) = Binning::new(self.boxes, order, axis) else { continue };
-            let mut bins = [(Aabb::EMPTY, 0usize); BINS];
-            for i in order.iter() {
-                let bounds = &self.boxes[*i as usize];
-                let bin = &mut bins[binning.bin(bounds)];
-                *bin = (bin.0.union(bounds), bin.1 + 1);
+    /// Parts a range between bins of equal width along the best axis; at least one goes to each side.
+    fn bin(&mut self, begin: usize, end: usize, depth: u32, middles: &Aabb) -> (usize, [Part; 2]) {
+        let entries = &mut self.entries[begin..end];
+        let split = if depth < HALVE_FROM_DEPTH { best_bin(entries, middles) } else { None };
+        let mut parts = [Part::EMPTY, Part::EMPTY];
+        let Some((binning, axis, bin)) = split else {
+            let count = entries.len() / 2;
+            for (k, entry) in entries.iter().enumerate() {
+                parts[usize::from(k >= count)].add(&entry.bounds);
             }
-            let mut suffix = [(Aabb::EMPTY, 0usize); BINS + 1];
-            for k in (0..BINS).rev() {
-                suffix[k] = (suffix[k + 1].0.union(&bins[k].0), suffix[k + 1].1 + bins[k].1);
-            }
-            let mut left = (Aabb::EMPTY, 0);
-            for k in 1..BINS {
-                left = (left.0.union(&bins[k - 1].0), left.1 + bins[k - 1].1);
-                let cost = left.0.area() * left.1 as f32 + suffix[k].0.area() * suffix[k].1 as f32;
-                if left.1 > 0 && suffix[k].1 > 0 && cost < best_cost {
-                    (best_cost, best) = (cost, Some((binning, k)));
-                }
-            }
-        }
-        let Some((binning, k)) = best else { return 0 };
-        // Sorted by (side, index): deterministic, and runs stay in the order of the scene.
-        let is_left = |i: &u32| binning.bin(&self.boxes[*i as usize]) < k;
-        let (left, right): (Vec<u32>, Vec<u32>) = order.iter().partition(|i| is_left(i));
-        order[..left.len()].copy_from_slice(&left);
-        order[left.len()..].copy_from_slice(&right);
-        left.len()
+            return (count, parts);
+        };
+        // Both sides keep the order of the scene.
+        let count = part_by(entries, &mut self.right, |entry| {
+            let is_left = binning.bins(&entry.bounds)[axis] < bin;
+            parts[usize::from(!is_left)].add(&entry.bounds);
+            is_left
+        });
+        (count, parts)
     }
 }
 
-/// Equal bins along an axis.
+/// Moves what `goes_left` to the front, both parts in the order they had; returns how many those are.
+fn part_by<T: Copy>(
+    items: &mut [T],
+    right: &mut Vec<T>,
+    mut goes_left: impl FnMut(&T) -> bool,
+) -> usize {
+    right.clear();
+    let mut count = 0;
+    for i in 0..items.len() {
+        let item = items[i];
+        if goes_left(&item) {
+            items[count] = item;
+            count += 1;
+        } else {
+            right.push(item);
+        }
+    }
+    items[count..].copy_from_slice(right);
+    count
+}
+
+/// The best split between bins along any axis: what is in a bin below this one goes left. `None` if all
+/// middles coincide.
+fn best_bin(entries: &[Entry], middles: &Aabb) -> Option<(Binning, usize, usize)> {
+    let binning = Binning::new(middles);
+    let mut bins = [[(Aabb::EMPTY, 0usize); BINS]; 3];
+    for Entry { bounds, item: _ } in entries {
+        for (bins, bin) in bins.iter_mut().zip(binning.bins(bounds)) {
+            let bin = &mut bins[bin];
+            *bin = (bin.0.union(bounds), bin.1 + 1);
+        }
+    }
+    let (mut best_cost, mut best) = (f32::INFINITY, None);
+    for (axis, bins) in bins.iter().enumerate() {
+        let mut suffix = [(Aabb::EMPTY, 0usize); BINS + 1];
+        for k in (0..BINS).rev() {
+            suffix[k] = (suffix[k + 1].0.union(&bins[k].0), suffix[k + 1].1 + bins[k].1);
+        }
+        let mut left = (Aabb::EMPTY, 0);
+        for k in 1..BINS {
+            left = (left.0.union(&bins[k - 1].0), left.1 + bins[k - 1].1);
+            let cost = left.0.area() * left.1 as f32 + suffix[k].0.area() * suffix[k].1 as f32;
+            if left.1 > 0 && suffix[k].1 > 0 && cost < best_cost {
+                (best_cost, best) = (cost, Some((binning, axis, k)));
+            }
+        }
+    }
+    best
+}
+
+/// Equal bins along every axis; one bin along an axis on which all middles coincide.
 #[derive(Clone, Copy, Debug)]
 struct Binning {
-    axis: usize,
-    low: f32,
-    scale: f32,
+    low: [f32; 3],
+    scale: [f32; 3],
 }
 
 impl Binning {
-    fn new(boxes: &[Aabb], order: &[u32], axis: usize) -> Option<Binning> {
-        let middles = order.iter().map(|i| boxes[*i as usize].middle(axis));
-        let (low, high) =
-            middles.fold((f32::INFINITY, f32::NEG_INFINITY), |(lo, hi), m| (m.min(lo), m.max(hi)));
-        let scale = BINS as f32 / (high - low);
-        (high > low && scale.is_finite()).then_some(Binning { axis, low, scale })
+    fn new(middles: &Aabb) -> Binning {
+        let scale = |k: usize| BINS as f32 / (middles.hi[k] - middles.lo[k]);
+        let finite = |scale: f32| if scale.is_finite() { scale } else { 0.0 };
+        Binning { low: middles.lo, scale: std::array::from_fn(|k| finite(scale(k))) }
     }
 
-    fn bin(&self, bounds: &Aabb) -> usize {
-        (((bounds.middle(self.axis) - self.low) * self.scale) as usize).min(BINS - 1)
+    fn bins(&self, bounds: &Aabb) -> [usize; 3] {
+        let middle = bounds.middle();
+        std::array::from_fn(|k| {
+            (((middle[k] - self.low[k]) * self.scale[k]) as usize).min(BINS - 1)
+        })
+    }
+}
+
+/// The smaller of two; `f32::min` also looks for NaN, which no box holds.
+fn lesser(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// A number that grows with `x`, −0 below +0.
+fn ordered(x: f32) -> u32 {
+    let bits = x.to_bits();
+    if bits >> 31 == 1 { !bits } else { bits | 1 << 31 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::testing::Random;
+
+    fn tree(boxes: &[Aabb]) -> BinaryTree {
+        BinaryTree::build(boxes, &Progress::default()).unwrap()
+    }
+
+    /// Checks that every primitive is in the order once, that children share the range of their node
+    /// and follow it, and that bounds are those of what is below; returns the depth.
+    fn checked(boxes: &[Aabb]) -> usize {
+        let BinaryTree { nodes, order } = tree(boxes);
+        let mut items = order.clone();
+        items.sort_unstable();
+        assert!(items.into_iter().eq(0..boxes.len() as u32));
+        let mut depths = vec![0; nodes.len()];
+        for (i, node) in nodes.iter().enumerate() {
+            let BinaryNode { bounds, begin, end, left } = *node;
+            let under = order[begin as usize..end as usize].iter();
+            let around = under.fold(Aabb::EMPTY, |all, item| all.union(&boxes[*item as usize]));
+            assert_eq!(bounds, around);
+            if left == 0 {
+                assert_eq!(end - begin, 1);
+                continue;
+            }
+            let [a, b] = [&nodes[left as usize], &nodes[left as usize + 1]];
+            assert!(left as usize > i && a.begin < a.end && b.begin < b.end);
+            assert_eq!((a.begin, a.end, b.end), (begin, b.begin, end));
+            depths[left as usize] = depths[i] + 1;
+            depths[left as usize + 1] = depths[i] + 1;
+        }
+        depths.into_iter().max().unwrap_or(0)
+    }
+
+    fn cube(center: [f32; 3], half: f32) -> Aabb {
+        Aabb { lo: center.map(|x| x - half), hi: center.map(|x| x + half) }
+    }
+
+    #[test]
+    fn trees_hold_every_primitive_once_in_tight_boxes() {
+        let mut random = Random(5);
+        for count in [0, 1, 2, 3, 31, 32, 33, 34, 500, 5000] {
+            let boxes: Vec<Aabb> = (0..count)
+                .map(|_| cube(random.in_cube().to_array().map(|x| x as f32), 1e-2))
+                .collect();
+            let depth = checked(&boxes);
+            assert!(depth <= 40, "{count}: {depth}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_told_apart_is_halved() {
+        assert_eq!(checked(&vec![cube([0.5; 3], 0.1); 4096]), 12);
+        // Every split but the halving ones would take one away.
+        let nested: Vec<Aabb> = (0..300).map(|i| cube([0.0; 3], 2f32.powi(-i / 3))).collect();
+        assert!(checked(&nested) <= 60);
+        let running: Vec<Aabb> =
+            (0..3000).map(|i| cube([2f32.powi(-i / 25), 0.0, 0.0], 0.0)).collect();
+        assert!(checked(&running) <= 60);
+    }
+
+    #[test]
+    fn far_groups_are_parted_first() {
+        let groups = [-1.0, 1.0].into_iter().flat_map(|x| (0..40).map(move |i| (x, i)));
+        let boxes: Vec<Aabb> = groups.map(|(x, i)| cube([x, 0.0, i as f32 * 1e-4], 1e-3)).collect();
+        let BinaryTree { nodes, order } = tree(&boxes);
+        assert_eq!((nodes[1].begin, nodes[1].end), (0, 40));
+        assert!(order[..40].iter().all(|item| *item < 40));
+    }
+
+    #[test]
+    fn numbers_are_ordered_as_floats_are() {
+        let rising = [f32::NEG_INFINITY, -2.5, -1e-40, -0.0, 0.0, 1e-40, 3.0, f32::INFINITY];
+        assert!(rising.map(ordered).is_sorted_by(|a, b| a < b));
     }
 }
