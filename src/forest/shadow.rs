@@ -139,7 +139,9 @@ impl Grower<'_> {
                 let lit = Lit { normal: surface.normal, to_eye: surface.to_eye, to_light };
                 let model = self.models[at.material as usize];
                 let lobe = lobe::highlight(model, &lit, surface.contrast);
-                (surface.normal.dot(to_light) as f32, lobe)
+                let softening = surface.softening(to_light);
+                let n_dot_l = (surface.normal.dot(to_light) * softening) as f32;
+                (n_dot_l, Lobe { weight: lobe.weight * softening as f32, ..lobe })
             }
             Reach::Behind(lobe) => (0.0, lobe),
         };

@@ -59,6 +59,19 @@ impl Surface {
         }
     }
 
+    /// What of a light in front shows where the shading normal is another than the geometric one: 1,
+    /// falling to 0 where the light sinks behind the surface, so that the facets of a smooth mesh do
+    /// not end in steps (Chiang, Li, Burley, "Taming the Shadow Terminator", SIGGRAPH Talks 2019).
+    #[inline(always)]
+    pub(super) fn softening(&self, to_light: DVec3) -> f64 {
+        if self.normal == self.geometric {
+            return 1.0;
+        }
+        let bent = self.normal.dot(to_light) * self.normal.dot(self.geometric);
+        let part = self.geometric.dot(to_light) / bent;
+        if bent > 0.0 && part < 1.0 { part * (1.0 + part - part * part) } else { 1.0 }
+    }
+
     /// Direction of the mirror ray, always above the geometric surface.
     #[inline(always)]
     pub(super) fn reflect(&self) -> DVec3 {
@@ -98,6 +111,22 @@ impl Surface {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn light_fades_before_it_sinks_behind_a_facet() {
+        let degrees = |angle: f64| {
+            let (sin, cos) = angle.to_radians().sin_cos();
+            DVec3::new(sin, 0.0, cos)
+        };
+        let smooth = met(degrees(20.0), DVec3::Z, false);
+        let shown = |angle: f64| smooth.softening(degrees(angle));
+        // The facet's horizon is at 90°, where the smooth surface still faces the light.
+        assert_eq!([shown(0.0), shown(-60.0)], [1.0; 2]);
+        let sweep: Vec<f64> = (10..=90).map(|angle| shown(f64::from(angle))).collect();
+        assert!(sweep.is_sorted_by(|a, b| a >= b) && sweep[0] == 1.0, "{sweep:?}");
+        assert!(shown(89.999) < 1e-4 && shown(85.0) < 0.5, "{sweep:?}");
+        assert_eq!(met(DVec3::Z, DVec3::Z, false).softening(degrees(89.999)), 1.0);
+    }
 
     /// Directions over the upper half, `tilt` from z in equal steps down to the horizon.
     fn above() -> impl Iterator<Item = DVec3> {
