@@ -149,6 +149,7 @@ impl Visit for Bits {
             | Slot::Flag(_)
             | Slot::Choice(_)
             | Slot::Material(_)
+            | Slot::Solids(_)
             | Slot::Mesh { .. }
             | Slot::Image(_) => {}
         }

@@ -200,6 +200,10 @@ fn random_value(parameter: &Parameter, scene: &Scene, random: &mut Random) -> St
         },
         Kind::Choice(names) => names[random.below(names.len())].to_owned(),
         Kind::Material => scene.materials[random.below(scene.materials.len())].name.clone(),
+        Kind::Solids => match random.below(2) {
+            0 => format!("[\"{}\"]", scene.solids[random.below(scene.solids.len())].name),
+            _ => parameter.value.clone(),
+        },
         Kind::File => parameter.value.clone(),
     }
 }

@@ -8,6 +8,8 @@
 mod binary;
 mod bump;
 mod compile;
+mod composite;
+mod crossings;
 mod generate;
 mod hierarchy;
 mod interaction;
@@ -42,7 +44,7 @@ use glam::DVec3;
 
 use crate::progress::{Cancelled, Progress};
 use crate::scene::Scene;
-use compile::Primitives;
+use compile::{Owner, Primitives};
 use hierarchy::Hierarchy;
 pub use hierarchy::Stack;
 pub use placement::corners;
@@ -88,8 +90,10 @@ pub struct Interaction {
     pub geometric_normal: DVec3,
     /// Unit, on the side of the geometric normal: a mesh's smooth normal if it has one.
     pub shading_normal: DVec3,
-    /// Index into `Scene::solids`.
+    /// Index into `Scene::solids`: the operand whose surface it is, of a solid made of others.
     pub solid: u32,
+    /// Index into `Scene::solids` of what it bounds: the whole, of a solid made of others.
+    pub body: u32,
     /// Index into `Scene::materials`.
     pub material: u16,
     /// Slot of the material's paint, if it shows whole slots.
@@ -185,16 +189,19 @@ impl Geometry {
     /// `None` if it is that of its slot. A piece of the surface `footprint` wide is looked at.
     pub fn finish(&self, stack: &Stack, at: &mut Interaction, footprint: f64) -> Option<Tone> {
         let look = self.surfaces.look(at.material);
-        let moving = self.primitives.moving(at.solid);
-        let uv = || match moving {
-            None => self.primitives.uv(at.solid, at),
-            Some((index, moving)) => moving.uv(index, &stack.moment, at),
+        let owner = self.primitives.owner(at.primitive);
+        let uv = || match owner {
+            Owner::Still => self.primitives.uv(at.solid, at),
+            Owner::Moving(index, moving) => moving.uv(index, &stack.moment, at),
+            Owner::Leaf(leaf) => leaf.uv(stack.time(), at),
         };
         let mut gradient = look.relief.gradient(at.rest, footprint, uv);
         let tone = look.pattern.tone(at.rest, footprint, uv);
-        if let Some((index, moving)) = moving {
-            gradient = moving.turned(index, &stack.moment, gradient);
-        }
+        gradient = match owner {
+            Owner::Still => gradient,
+            Owner::Moving(index, moving) => moving.turned(index, &stack.moment, gradient),
+            Owner::Leaf(leaf) => leaf.turned(stack.time(), gradient),
+        };
         if let Some(normal) = bump::bent(at.shading_normal, gradient) {
             (at.shading_normal, at.bumped) = (normal, true);
         }

@@ -35,6 +35,16 @@ impl Placed {
         }
     }
 
+    /// The placement of what is placed by `inner` in this one's object space.
+    pub(super) fn of(&self, inner: &Placed) -> Placed {
+        Placed {
+            linear: self.linear * inner.linear,
+            inverse: inner.inverse * self.inverse,
+            translation: self.point(inner.translation),
+            similarity: self.similarity.zip(inner.similarity).map(|(a, b)| a * b),
+        }
+    }
+
     /// The factor of all lengths, if it is the same in every direction.
     pub(super) fn similarity(&self) -> Option<f64> {
         self.similarity
@@ -130,6 +140,7 @@ pub fn corners(solid: &Solid) -> Option<Vec<DVec3>> {
         Shape::Plane { .. }
         | Shape::Mesh { .. }
         | Shape::Knot { .. }
+        | Shape::Csg { .. }
         | Shape::Sphereflake { .. } => return None,
     };
     let placed = Placed::new(&solid.placement);

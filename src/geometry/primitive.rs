@@ -85,6 +85,8 @@ pub(super) enum Form {
     Polygon(Box<[Corner]>, DVec3),
     /// All of the solid with this index among those that move, which has primitives of its own.
     Moving(u32),
+    /// All of the one with this index among those made of others.
+    Composite(u32),
 }
 
 impl Sphere {
@@ -154,7 +156,7 @@ impl Form {
                 Start::Elsewhere => polygon_root(ray, shear, corners, *normal),
                 Start::Outside | Start::Inside => Roots::NONE,
             },
-            Form::Moving(_) => Roots::NONE,
+            Form::Moving(_) | Form::Composite(_) => Roots::NONE,
         }
     }
 }

@@ -18,6 +18,29 @@ pub(super) trait Query {
     fn is_done(&self) -> bool;
 }
 
+/// All crossings, in no order.
+#[derive(Debug)]
+pub(super) struct Gather<'a> {
+    /// `t` and primitive of each.
+    pub(super) hits: &'a mut Vec<(f64, u32)>,
+}
+
+impl Query for Gather<'_> {
+    const ALL: bool = true;
+
+    fn limit(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    fn offer(&mut self, t: f64, primitive: u32) {
+        self.hits.push((t, primitive));
+    }
+
+    fn is_done(&self) -> bool {
+        false
+    }
+}
+
 /// The smallest `t`; of equal ones the lowest primitive.
 #[derive(Debug)]
 pub(super) struct Closest {

@@ -7,7 +7,6 @@ use glam::{DVec2, DVec3};
 
 use super::Interaction;
 use super::compile::{Compiled, Kind, Primitives, exact_normalize, newell_normal};
-use super::motion::Moving;
 use super::placement::Placed;
 use super::primitive::Form;
 use super::shear::point;
@@ -67,6 +66,8 @@ impl Frame {
             Shape::Knot { turns: _, tube: _, segments: [along, around] } => {
                 Chart::Tube { along: *along, around: *around, order }
             }
+            // Its operands have charts of their own.
+            Shape::Csg { .. } => Chart::Ball,
         };
         Frame { placed, chart }
     }
@@ -104,14 +105,6 @@ fn extent(length: f64) -> f64 {
 }
 
 impl Primitives {
-    /// The solid with this index if it moves, and its place among those that do.
-    #[inline(always)]
-    pub(super) fn moving(&self, solid: u32) -> Option<(u32, &Moving)> {
-        let item = self.solids[solid as usize].item;
-        let place = || (item.index, &self.moving[item.index as usize]);
-        (item.kind == Kind::Moving).then(place)
-    }
-
     /// u and v at a point of the solid with this index, which does not move.
     pub(super) fn uv(&self, solid: u32, at: &Interaction) -> Uv {
         let solid = solid as usize;

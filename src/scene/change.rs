@@ -383,6 +383,9 @@ impl Change {
         new: &Solid,
         new_material: Option<&Material>,
     ) {
+        if new.shape.is_composite() {
+            return;
+        }
         let before = old.material as u16;
         let differs = self.materials.get(new.material) != Some(&Some(before));
         self.node(differs, before, "a solid's material");

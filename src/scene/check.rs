@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use glam::DVec3;
 
+use super::csg;
 use super::direction::{TINY, unit};
 use super::fields::{self, Need, Visit};
 use super::light::MOST_LIGHT_RAYS;
@@ -34,7 +35,7 @@ pub struct Flaw {
 }
 
 impl Flaw {
-    fn new(path: &[&str], message: impl Into<String>, help: impl Into<String>) -> Flaw {
+    pub(super) fn new(path: &[&str], message: impl Into<String>, help: impl Into<String>) -> Flaw {
         let path = path.iter().map(|key| (*key).to_owned()).collect();
         Flaw { path, message: message.into(), help: help.into() }
     }
@@ -42,7 +43,7 @@ impl Flaw {
 
 /// Everything wrong with a scene, ranges included; empty for every scene that was read from a file.
 pub fn validate(scene: &Scene) -> Vec<Flaw> {
-    let names = Names::of(&scene.materials);
+    let names = Names::of(scene);
     let mut ranges =
         Ranges { path: Vec::new(), names, count: scene.materials.len(), flaws: Vec::new() };
     fields::scene(&mut scene.clone(), &mut ranges);
@@ -65,6 +66,7 @@ pub fn relations(scene: &Scene) -> Vec<Flaw> {
     flaws.extend(too_many_rays(scene));
     flaws.extend(scene.materials.iter().filter_map(material));
     flaws.extend(scene.solids.iter().filter_map(solid));
+    flaws.extend(csg::flaws(scene));
     flaws
 }
 
@@ -203,7 +205,10 @@ fn shape(shape: &Shape) -> Option<(&'static str, String, String)> {
             polygon(points).map(|(message, help)| ("points", message, help))
         }
         Shape::Knot { turns, tube: _, segments } => knot(*turns, *segments),
-        Shape::Sphere { .. } | Shape::Mesh { .. } | Shape::Sphereflake { .. } => None,
+        Shape::Sphere { .. }
+        | Shape::Mesh { .. }
+        | Shape::Sphereflake { .. }
+        | Shape::Csg { .. } => None,
     }
 }
 

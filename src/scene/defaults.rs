@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::Placement;
+use super::csg::Operation;
 use super::filter::Filter;
 use super::mesh::Mesh;
 use super::model::Model;
@@ -169,8 +170,12 @@ impl Background {
 }
 
 impl Shape {
-    /// The shape whose key in the scene file is `key`, of unit size; a sphere for any other word.
+    /// The shape whose key in the scene file is `key`, of unit size, or made of the first solid; a sphere
+    /// for any other word.
     pub fn named(key: &str) -> Shape {
+        if let Some(operation) = Operation::named(key) {
+            return Shape::Csg { operation, operands: vec![0] };
+        }
         match key {
             "plane" => Shape::Plane { normal: DVec3::Z, offset: 0.0 },
             "box" => Shape::Box { min: DVec3::NEG_ONE, max: DVec3::ONE },

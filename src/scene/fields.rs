@@ -48,7 +48,20 @@ pub const BACKGROUNDS: &[&str] = &["color", "gradient", "image"];
 /// Keys of the functions in a `bump`.
 pub const BUMPS: &[&str] = &["noise", "waves", "image"];
 /// Keys of [`Shape`].
-pub const SHAPES: &[&str] = &["sphere", "plane", "box", "polygon", "mesh", "knot", "sphereflake"];
+pub const SHAPES: &[&str] = &[
+    "sphere",
+    "plane",
+    "box",
+    "polygon",
+    "mesh",
+    "knot",
+    "sphereflake",
+    "union",
+    "merge",
+    "intersection",
+    "difference",
+    "complement",
+];
 
 /// Whether a key must stand in the scene file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -374,8 +387,12 @@ fn unevenness(bump: &mut Bump, v: &mut dyn Visit) {
 pub fn solid(solid: &mut Solid, v: &mut dyn Visit) {
     let Solid { name: _, shape, material, placement, motion } = solid;
     let key = shape_key(shape);
-    v.group(key, Need::OneOf(SHAPES), &mut |v| self::shape(shape, v));
-    v.leaf("material", Need::Required, Slot::Material(material));
+    if let Shape::Csg { operation: _, operands } = shape {
+        v.leaf(key, Need::OneOf(SHAPES), Slot::Solids(operands));
+    } else {
+        v.group(key, Need::OneOf(SHAPES), &mut |v| self::shape(shape, v));
+        v.leaf("material", Need::Required, Slot::Material(material));
+    }
     self::placement(placement, v);
     v.group("motion", Need::Optional, &mut |v| self::motion(motion, v));
 }
@@ -405,6 +422,7 @@ pub fn shape_key(shape: &Shape) -> &'static str {
         Shape::Mesh { .. } => "mesh",
         Shape::Knot { .. } => "knot",
         Shape::Sphereflake { .. } => "sphereflake",
+        Shape::Csg { operation, operands: _ } => operation.key(),
     }
 }
 
@@ -436,6 +454,8 @@ pub fn shape(shape: &mut Shape, v: &mut dyn Visit) {
             v.leaf("radius", need, Slot::Number(radius, LENGTH));
             v.leaf("levels", need, Slot::Whole(levels, Range::closed(1.0, 6.0)));
         }
+        // Its key holds the operands themselves.
+        Shape::Csg { operation: _, operands: _ } => {}
     }
 }
 

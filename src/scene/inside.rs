@@ -32,15 +32,20 @@ impl Scene {
 
     /// Materials of the solids that may contain the eye, or for a parallel view, any ray's origin.
     fn around_the_eye(&self) -> Vec<usize> {
-        let known = self.solids.iter().filter(|solid| solid.material < self.materials.len());
+        let operands = self.is_operand();
+        let solids =
+            self.solids.iter().zip(operands).filter(|(solid, _)| !solid.shape.is_composite());
+        let known = solids.filter(|(solid, _)| solid.material < self.materials.len());
         let [width, pixels] = self.picture.size.map(f64::from);
         let reach = match self.camera.lens {
             Lens::Perspective { fov_degrees: _ } => self.camera.opening().map_or(0.0, |o| o.radius),
             // Parallel rays begin on a rectangle around the eye.
             Lens::Parallel { height } => height / 2.0 * (width / pixels).hypot(1.0),
         };
-        let around = known.filter(|solid| solid.may_contain(self.camera.eye, reach));
-        around.map(|solid| solid.material).collect()
+        // Operands stand where the solids made of them put them, and outside may be inside.
+        let around =
+            known.filter(|(solid, operand)| *operand || solid.may_contain(self.camera.eye, reach));
+        around.map(|(solid, _)| solid.material).collect()
     }
 }
 
@@ -78,7 +83,8 @@ impl Solid {
                 let margin = DVec3::splat((min.abs() + max.abs()).max_element() * MARGIN + reach);
                 p.cmpge(*min - margin).all() && p.cmple(*max + margin).all()
             }
-            Shape::Polygon { points: _ } => false,
+            // The surfaces of what it is made of are asked about.
+            Shape::Polygon { points: _ } | Shape::Csg { .. } => false,
             // A part of it may be turned inside out: seen from outside it is like an inside.
             Shape::Mesh { file: _, mesh: _ } => true,
             // The knot lies within a torus of radius 1 ½ and its own tube.

@@ -6,6 +6,7 @@
 
 pub mod change;
 pub mod check;
+pub mod csg;
 mod defaults;
 mod direction;
 pub mod energy;
@@ -25,6 +26,7 @@ pub mod range;
 pub mod read;
 mod reader;
 pub mod refine;
+pub mod seams;
 pub mod slot;
 pub mod texture;
 pub(crate) mod toml_text;
@@ -36,6 +38,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::color::Rgb;
+use csg::Operation;
 use filter::Filter;
 pub use light::{Area, Light, LightPlace};
 use mesh::Mesh;
@@ -246,7 +249,8 @@ pub struct Solid {
     pub name: String,
     /// The form, in object space.
     pub shape: Shape,
-    /// Index into `Scene::materials`.
+    /// Index into `Scene::materials`; of no meaning where the solid is made of others, whose surfaces
+    /// keep their own.
     pub material: usize,
     /// world_from_object.
     pub placement: Placement,
@@ -316,6 +320,14 @@ pub enum Shape {
         tube: f64,
         /// Segments along and around the tube, each 3 … 65 536, at most [`MAX_KNOT_FACES`] together.
         segments: [u32; 2],
+    },
+    /// What an operation makes of other solids, which are then not seen by themselves. The operands'
+    /// world is this solid's object space: its placement and motion come on top of theirs.
+    Csg {
+        /// Which one.
+        operation: Operation,
+        /// Indices into `Scene::solids`, one or more; none of them is, in the end, made of this solid.
+        operands: Vec<usize>,
     },
     /// A sphere carrying nine spheres of a third of its radius, recursively: (9^levels − 1)/8 spheres.
     Sphereflake {

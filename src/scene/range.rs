@@ -102,6 +102,8 @@ pub enum Kind {
     Points,
     /// The name of a material.
     Material,
+    /// `["a", "b", …]`, names of solids.
+    Solids,
     /// The name of a mesh or image file.
     File,
 }
@@ -120,6 +122,7 @@ impl Kind {
             Kind::Scale => "a number or [x, y, z]",
             Kind::Points => "a list of points [[x, y, z], …]",
             Kind::Material => "the name of a material",
+            Kind::Solids => "a list of names of solids [\"a\", \"b\", …]",
             Kind::File => "the name of a file",
         }
     }

@@ -50,6 +50,8 @@ pub enum Slot<'a> {
     Points(&'a mut Vec<DVec3>, Range),
     /// Index of a material, written as its name.
     Material(&'a mut usize),
+    /// Indices of solids, written as their names.
+    Solids(&'a mut Vec<usize>),
     /// A mesh file and what it held when it was read.
     Mesh {
         /// As written in the scene.
@@ -75,6 +77,7 @@ impl Slot<'_> {
             Slot::Scale(..) => Kind::Scale,
             Slot::Points(..) => Kind::Points,
             Slot::Material(_) => Kind::Material,
+            Slot::Solids(_) => Kind::Solids,
             Slot::Mesh { .. } | Slot::Image(_) => Kind::File,
         }
     }
@@ -90,7 +93,7 @@ impl Slot<'_> {
             | Slot::Vector(_, range)
             | Slot::Scale(_, range)
             | Slot::Points(_, range) => Some(*range),
-            Slot::Flag(_) | Slot::Choice(_) | Slot::Material(_) => None,
+            Slot::Flag(_) | Slot::Choice(_) | Slot::Material(_) | Slot::Solids(_) => None,
             Slot::Mesh { .. } | Slot::Image(_) => None,
         }
     }
@@ -112,8 +115,10 @@ impl Slot<'_> {
             Slot::Points(points, _) => {
                 format!("[{}]", points.iter().map(vector).collect::<Vec<_>>().join(", "))
             }
-            Slot::Material(index) => {
-                quoted(names.list.get(**index).map_or("NAME", |name| name.as_str()))
+            Slot::Material(index) => quoted(names.materials.name(**index)),
+            Slot::Solids(operands) => {
+                let name = |index: &usize| quoted(names.solids.name(*index));
+                format!("[{}]", operands.iter().map(name).collect::<Vec<_>>().join(", "))
             }
             Slot::Mesh { file, .. } => quoted(file),
             Slot::Image(ImageFile { file, image: _ }) => quoted(file),
@@ -142,7 +147,8 @@ impl Slot<'_> {
             Slot::Vector(v, _) => **v = DVec3::from(target.three(value)?),
             Slot::Scale(v, _) => **v = DVec3::from(target.one_or_three(value)?),
             Slot::Points(points, _) => **points = target.points(value)?,
-            Slot::Material(index) => **index = target.material(value, names)?,
+            Slot::Material(index) => **index = target.material(value, &names.materials)?,
+            Slot::Solids(operands) => **operands = target.solids(value, &names.solids)?,
             Slot::Mesh { .. } | Slot::Image(_) => return Err(target.fixed(value)),
         }
         match self.first_outside() {
@@ -171,6 +177,7 @@ impl Slot<'_> {
                 }
             }
             Slot::Material(index) => **index += 1,
+            Slot::Solids(operands) => operands.push(0),
             Slot::Mesh { .. } | Slot::Image(_) => {}
         }
     }
@@ -201,7 +208,7 @@ impl Slot<'_> {
             Slot::Points(points, _) => {
                 points.iter().flat_map(DVec3::to_array).enumerate().find(bad)
             }
-            Slot::Flag(_) | Slot::Choice(_) | Slot::Material(_) => None,
+            Slot::Flag(_) | Slot::Choice(_) | Slot::Material(_) | Slot::Solids(_) => None,
             Slot::Mesh { .. } | Slot::Image(_) => None,
         }
     }

@@ -145,6 +145,13 @@ fn value_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> bool {
             explained(label, row, None);
             false
         }
+        // Which solids one is made of is said in the scene file.
+        Slot::Solids(_) => {
+            let text = slot.text(row.names);
+            let label = ui.add(Label::new(text.as_str()).truncate());
+            explained(label.on_hover_text(text), row, None);
+            false
+        }
         Slot::Points(..) | Slot::Image(_) => false,
     }
 }
@@ -355,7 +362,7 @@ fn choice_ui(ui: &mut Ui, row: &Row<'_>, choice: &mut dyn Choice) -> bool {
 
 fn material_ui(ui: &mut Ui, row: &Row<'_>, index: &mut usize) -> bool {
     let before = *index;
-    let names = row.names.list();
+    let names = row.names.materials();
     let name = |i: usize| names.get(i).map_or("?", String::as_str);
     let combo = ComboBox::from_id_salt(row.path).selected_text(name(before));
     let response = combo.width(ui.available_width()).show_ui(ui, |ui| {

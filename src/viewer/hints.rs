@@ -109,6 +109,11 @@ fn about_form(key: &str) -> &'static str {
         "tube" => "Radius of the tube; the knot's own radius is 1",
         "segments" => "Segments along and around the tube",
         "levels" => "Generations of spheres",
+        "union" => "The solids that it groups; each keeps its whole surface",
+        "merge" => "The solids that it joins: surfaces inside of others are not there",
+        "intersection" => "The solids that it is the common part of",
+        "difference" => "A solid, and those that are cut out of it",
+        "complement" => "The solids that it is everything but",
         "rotate_degrees" => {
             "Turns about x, then y, then z, in degrees; of a motion: how much farther it turns"
         }

@@ -59,6 +59,8 @@ fn scaled(scene: &Scene, by: f64) -> Scene {
                 *max *= by;
             }
             Shape::Polygon { points } => points.iter_mut().for_each(|p| *p *= by),
+            // What its operands are made of is scaled itself.
+            Shape::Csg { .. } => {}
             Shape::Mesh { .. } | Shape::Knot { .. } => *scale *= by,
         }
     }
