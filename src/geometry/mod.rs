@@ -7,7 +7,9 @@
 
 mod binary;
 mod bump;
+mod closed;
 mod compile;
+mod frustum;
 mod generate;
 mod hierarchy;
 mod interaction;
@@ -18,9 +20,13 @@ mod pattern;
 mod placement;
 mod plan;
 mod primitive;
+mod prism;
+mod quadratic;
+mod quadric;
 mod query;
 mod shear;
 mod sky;
+mod spans;
 mod surfaces;
 #[cfg(test)]
 mod testing;
@@ -32,6 +38,7 @@ mod tests_acne;
 mod tests_motion;
 mod texel;
 mod tone;
+mod torus;
 mod traverse;
 mod uv;
 
