@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::closed::Closed;
 use super::composite::{Chain, Composite, Leaf, Parts};
 use super::generate;
 use super::motion::Moving;
@@ -178,6 +179,7 @@ impl Primitives {
     pub(super) fn bytes(&self) -> usize {
         let polygons = self.shapes.iter().map(|shape| match &shape.form {
             Form::Polygon(corners, _) => size_of_val(&**corners),
+            Form::Closed(closed) => closed.bytes(),
             Form::Cuboid(_) | Form::Moving(_) | Form::Composite(_) => 0,
             Form::PlacedCuboid(placed, _) | Form::Ellipsoid(placed, _, _) => size_of_val(&**placed),
         });
@@ -204,6 +206,14 @@ impl Primitives {
             Shape::Plane { normal, offset } => self.plane(&placed, *normal, *offset),
             Shape::Box { min, max } => self.cuboid(&placed, [*min, *max]),
             Shape::Polygon { points } => self.polygon(&placed, points),
+            Shape::Ellipsoid { center, radii } => {
+                self.sphere(&placed.stretched(*center, *radii), DVec3::ZERO, 1.0)
+            }
+            shape @ (Shape::Cylinder { .. }
+            | Shape::Cone { .. }
+            | Shape::Torus { .. }
+            | Shape::Quadric { .. }
+            | Shape::Prism { .. }) => self.closed(&placed, shape),
             Shape::Mesh { file: _, mesh } => {
                 let (item, thin, turned) = self.mesh(&placed, mesh, progress)?;
                 order = turned;
@@ -357,6 +367,13 @@ impl Primitives {
         } else {
             Form::PlacedCuboid(Box::new(*placed), corners)
         };
+        self.shapes.push(OtherShape { form, primitive: self.number() });
+        (item, false)
+    }
+
+    fn closed(&mut self, placed: &Placed, shape: &Shape) -> (Item, bool) {
+        let item = self.next(Kind::Shape);
+        let form = Form::Closed(Box::new(Closed::new(placed, shape)));
         self.shapes.push(OtherShape { form, primitive: self.number() });
         (item, false)
     }

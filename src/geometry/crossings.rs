@@ -7,6 +7,7 @@
 
 use glam::DVec3;
 
+use super::Ray;
 use super::primitive::{Form, Plane, Sphere, Start, cuboid_faces, sphere_roots};
 
 impl Sphere {
@@ -63,6 +64,7 @@ impl Form {
                 let (origin, direction) = placed.ray_to_object(origin, direction);
                 ball(origin - center, direction, *radius, start, out);
             }
+            Form::Closed(closed) => closed.crossings(&Ray { origin, direction }, start, out),
             Form::Polygon(..) | Form::Moving(_) | Form::Composite(_) => {}
         }
     }

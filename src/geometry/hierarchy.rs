@@ -309,6 +309,7 @@ fn box_about(all: &Primitives, item: Item, center: DVec3) -> [DVec3; 2] {
                 around(placed.point(*middle), placed.sphere_extent(*radius))
             }
             Form::Polygon(corners, _) => box_of_points(corners.iter().map(|c| point(c) - center)),
+            Form::Closed(closed) => closed.bounds().map(|c| c - center),
             Form::Moving(index) => all.moving[*index as usize].bounds().map(|c| c - center),
             Form::Composite(index) => all.composites[*index as usize].bounds().map(|c| c - center),
         },

@@ -148,12 +148,16 @@ fn form_surface(form: &Form, ray: &Ray, t: f64) -> Surface {
             let at = on_plane + (from_corner - *normal * normal.dot(from_corner));
             (snap(at, *normal, on_plane), *normal, None)
         }
+        Form::Closed(closed) => {
+            let (point, normal) = closed.surface(ray, t);
+            (point, normal, None)
+        }
         Form::Moving(_) | Form::Composite(_) => unreachable!("it has primitives of its own"),
     }
 }
 
 /// Point and outward normal of the face that the ray meets at `t`, both in the box's space.
-fn cuboid_surface(o: DVec3, d: DVec3, corners: &[DVec3; 2], t: f64) -> (DVec3, DVec3) {
+pub(super) fn cuboid_surface(o: DVec3, d: DVec3, corners: &[DVec3; 2], t: f64) -> (DVec3, DVec3) {
     let (near, far) = cuboid_faces(o, d, corners);
     let [min, max] = *corners;
     let (axis, entering) = if t == near.0 { (near.1, true) } else { (far.1, false) };

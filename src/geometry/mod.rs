@@ -7,9 +7,11 @@
 
 mod binary;
 mod bump;
+mod closed;
 mod compile;
 mod composite;
 mod crossings;
+mod frustum;
 mod generate;
 mod hierarchy;
 mod interaction;
@@ -20,9 +22,13 @@ mod pattern;
 mod placement;
 mod plan;
 mod primitive;
+mod prism;
+mod quadratic;
+mod quadric;
 mod query;
 mod shear;
 mod sky;
+mod spans;
 mod surfaces;
 #[cfg(test)]
 mod testing;
@@ -34,6 +40,7 @@ mod tests_acne;
 mod tests_motion;
 mod texel;
 mod tone;
+mod torus;
 mod traverse;
 mod uv;
 

@@ -286,6 +286,10 @@ impl Geometry {
             return;
         }
         let start = walk.leaving.start_of(shape.primitive);
+        if let Form::Closed(closed) = &shape.form {
+            closed.meet(walk.ray, start, shape.primitive, query);
+            return;
+        }
         offer_roots(shape.form.roots(walk.ray, &walk.shear, start), shape.primitive, query);
     }
 
@@ -366,7 +370,7 @@ fn splat3<S: Simd>(simd: S, v: DVec3) -> [f32x8<S>; 3] {
 
 /// Offers the crossings with `t > 0`; only the first one unless the query wants all.
 #[inline(always)]
-fn offer_roots<Q: Query>(Roots { near, far }: Roots, primitive: u32, query: &mut Q) {
+pub(super) fn offer_roots<Q: Query>(Roots { near, far }: Roots, primitive: u32, query: &mut Q) {
     if near > 0.0 {
         query.offer(near, primitive);
         if !Q::ALL {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::Placement;
 use super::csg::Operation;
@@ -179,6 +179,24 @@ impl Shape {
         match key {
             "plane" => Shape::Plane { normal: DVec3::Z, offset: 0.0 },
             "box" => Shape::Box { min: DVec3::NEG_ONE, max: DVec3::ONE },
+            "cylinder" => Shape::Cylinder { from: DVec3::NEG_Z, to: DVec3::Z, radius: 1.0 },
+            "cone" => Shape::Cone { from: DVec3::NEG_Z, to: DVec3::Z, radius: 1.0, tip: 0.0 },
+            "torus" => Shape::Torus { major: 1.0, minor: 0.3 },
+            "ellipsoid" => {
+                Shape::Ellipsoid { center: DVec3::ZERO, radii: DVec3::new(1.0, 0.8, 0.6) }
+            }
+            "quadric" => Shape::Quadric {
+                squares: DVec3::new(1.0, 1.0, -1.0),
+                products: DVec3::ZERO,
+                linear: DVec3::ZERO,
+                constant: -0.2,
+                min: DVec3::NEG_ONE,
+                max: DVec3::ONE,
+            },
+            "prism" => {
+                let outline = vec![vec![DVec2::ZERO, DVec2::X, DVec2::Y]];
+                Shape::Prism { outline, bottom: 0.0, top: 1.0 }
+            }
             "polygon" => Shape::Polygon { points: vec![DVec3::ZERO, DVec3::X, DVec3::Y] },
             "mesh" => Shape::Mesh { file: "mesh.obj".to_owned(), mesh: Arc::new(Mesh::default()) },
             "knot" => Shape::Knot { turns: [2, 3], tube: 0.3, segments: [400, 100] },

@@ -52,6 +52,12 @@ pub const SHAPES: &[&str] = &[
     "sphere",
     "plane",
     "box",
+    "cylinder",
+    "cone",
+    "torus",
+    "ellipsoid",
+    "quadric",
+    "prism",
     "polygon",
     "mesh",
     "knot",
@@ -418,6 +424,12 @@ pub fn shape_key(shape: &Shape) -> &'static str {
         Shape::Sphere { .. } => "sphere",
         Shape::Plane { .. } => "plane",
         Shape::Box { .. } => "box",
+        Shape::Cylinder { .. } => "cylinder",
+        Shape::Cone { .. } => "cone",
+        Shape::Torus { .. } => "torus",
+        Shape::Ellipsoid { .. } => "ellipsoid",
+        Shape::Quadric { .. } => "quadric",
+        Shape::Prism { .. } => "prism",
         Shape::Polygon { .. } => "polygon",
         Shape::Mesh { .. } => "mesh",
         Shape::Knot { .. } => "knot",
@@ -441,6 +453,38 @@ pub fn shape(shape: &mut Shape, v: &mut dyn Visit) {
         Shape::Box { min, max } => {
             v.leaf("min", need, Slot::Vector(min, COORDINATE));
             v.leaf("max", need, Slot::Vector(max, COORDINATE));
+        }
+        Shape::Cylinder { from, to, radius } => {
+            v.leaf("from", need, Slot::Vector(from, COORDINATE));
+            v.leaf("to", need, Slot::Vector(to, COORDINATE));
+            v.leaf("radius", need, Slot::Number(radius, LENGTH));
+        }
+        Shape::Cone { from, to, radius, tip } => {
+            v.leaf("from", need, Slot::Vector(from, COORDINATE));
+            v.leaf("to", need, Slot::Vector(to, COORDINATE));
+            v.leaf("radius", need, Slot::Number(radius, LENGTH));
+            v.leaf("tip", Need::Optional, Slot::Number(tip, DISTANCE));
+        }
+        Shape::Torus { major, minor } => {
+            v.leaf("major", need, Slot::Number(major, LENGTH));
+            v.leaf("minor", need, Slot::Number(minor, LENGTH));
+        }
+        Shape::Ellipsoid { center, radii } => {
+            v.leaf("center", need, Slot::Vector(center, COORDINATE));
+            v.leaf("radii", need, Slot::Vector(radii, LENGTH));
+        }
+        Shape::Quadric { squares, products, linear, constant, min, max } => {
+            v.leaf("squares", need, Slot::Vector(squares, COORDINATE));
+            v.leaf("products", Need::Optional, Slot::Vector(products, COORDINATE));
+            v.leaf("linear", Need::Optional, Slot::Vector(linear, COORDINATE));
+            v.leaf("constant", need, Slot::Number(constant, COORDINATE));
+            v.leaf("min", need, Slot::Vector(min, COORDINATE));
+            v.leaf("max", need, Slot::Vector(max, COORDINATE));
+        }
+        Shape::Prism { outline, bottom, top } => {
+            v.leaf("outline", need, Slot::Loops(outline, COORDINATE));
+            v.leaf("bottom", need, Slot::Number(bottom, COORDINATE));
+            v.leaf("top", need, Slot::Number(top, COORDINATE));
         }
         Shape::Polygon { points } => v.leaf("points", need, Slot::Points(points, COORDINATE)),
         Shape::Mesh { file, mesh } => v.leaf("file", need, Slot::Mesh { file, mesh }),

@@ -1,6 +1,6 @@
 //! Which indices of refraction can show: what surrounds the eye, and what light passes through.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 use super::model::Model;
 use super::{Lens, Material, Placement, Scene, Shape, Solid};
@@ -73,15 +73,33 @@ impl Solid {
         let within = |center: DVec3, radius: f64| {
             (p - center).length() <= radius * (1.0 + MARGIN) + center.length() * MARGIN + reach
         };
+        let around = |min: DVec3, max: DVec3| {
+            let margin = DVec3::splat((min.abs() + max.abs()).max_element() * MARGIN + reach);
+            p.cmpge(min - margin).all() && p.cmple(max + margin).all()
+        };
+        let rod = |from: DVec3, to: DVec3, radius: f64| {
+            let half = (to - from) * 0.5;
+            within(from + half, half.length() + radius)
+        };
         match &self.shape {
             Shape::Sphere { center, radius } => within(*center, *radius),
             Shape::Plane { normal, offset } => {
                 let size = p.length() + offset.abs();
                 normal.normalize_or_zero().dot(p) <= offset + size * MARGIN + reach
             }
-            Shape::Box { min, max } => {
-                let margin = DVec3::splat((min.abs() + max.abs()).max_element() * MARGIN + reach);
-                p.cmpge(*min - margin).all() && p.cmple(*max + margin).all()
+            Shape::Box { min, max } => around(*min, *max),
+            Shape::Cylinder { from, to, radius } => rod(*from, *to, *radius),
+            Shape::Cone { from, to, radius, tip } => rod(*from, *to, radius.max(*tip)),
+            Shape::Torus { major, minor } => within(DVec3::ZERO, major + minor),
+            Shape::Ellipsoid { center, radii } => around(*center - *radii, *center + *radii),
+            Shape::Quadric { squares: _, products: _, linear: _, constant: _, min, max } => {
+                around(*min, *max)
+            }
+            Shape::Prism { outline, bottom, top } => {
+                let corners = || outline.iter().flatten();
+                let min = corners().fold(DVec2::INFINITY, |a, b| a.min(*b));
+                let max = corners().fold(DVec2::NEG_INFINITY, |a, b| a.max(*b));
+                around(min.extend(*bottom), max.extend(*top))
             }
             // The surfaces of what it is made of are asked about.
             Shape::Polygon { points: _ } | Shape::Csg { .. } => false,

@@ -19,6 +19,7 @@ pub mod mesh;
 pub mod model;
 pub mod motion;
 mod obj;
+mod outline;
 mod paint;
 pub mod path;
 pub mod problem;
@@ -35,7 +36,7 @@ pub mod write;
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::color::Rgb;
 use csg::Operation;
@@ -299,6 +300,65 @@ pub enum Shape {
         min: DVec3,
         /// Highest corner.
         max: DVec3,
+    },
+    /// A round rod with flat ends.
+    Cylinder {
+        /// Middle of one end.
+        from: DVec3,
+        /// Middle of the other end; differs from `from`.
+        to: DVec3,
+        /// > 0.
+        radius: f64,
+    },
+    /// A cone, whose tip may be cut off: its radius changes evenly from one end to the other.
+    Cone {
+        /// Middle of one end.
+        from: DVec3,
+        /// Middle of the other end; differs from `from`.
+        to: DVec3,
+        /// Radius at `from`, > 0.
+        radius: f64,
+        /// Radius at `to`, ≥ 0; 0 is a point.
+        tip: f64,
+    },
+    /// A tube around a circle around the z axis. If `minor` exceeds `major` it has no hole.
+    Torus {
+        /// Radius of the circle, > 0.
+        major: f64,
+        /// Radius of the tube, > 0.
+        minor: f64,
+    },
+    /// A sphere with a radius of its own along each axis.
+    Ellipsoid {
+        /// Centre.
+        center: DVec3,
+        /// Each > 0.
+        radii: DVec3,
+    },
+    /// All points of a box where a function of the second degree is not above zero.
+    Quadric {
+        /// Coefficients of x², y², z².
+        squares: DVec3,
+        /// Coefficients of yz, zx, xy.
+        products: DVec3,
+        /// Coefficients of x, y, z.
+        linear: DVec3,
+        /// What the function is at the origin.
+        constant: f64,
+        /// Lowest corner of the box.
+        min: DVec3,
+        /// Highest corner of the box; `min < max` on every axis.
+        max: DVec3,
+    },
+    /// A flat outline in x and y, swept from one height to another.
+    Prism {
+        /// Loops of three or more points, which do not cross: the first one and its holes. A point is
+        /// inside if an odd number of loops is around it.
+        outline: Vec<Vec<DVec2>>,
+        /// Lower z.
+        bottom: f64,
+        /// Upper z, > `bottom`.
+        top: f64,
     },
     /// A flat polygon of three or more points: a surface without thickness, which does not refract.
     Polygon {

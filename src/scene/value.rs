@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::str::FromStr;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use toml::Spanned;
 use toml::de::DeValue;
 
@@ -161,6 +161,27 @@ impl Target<'_> {
     pub(super) fn points(&self, value: &Spanned<DeValue<'_>>) -> Result<Vec<DVec3>, Mistake> {
         let list = value.get_ref().as_array().ok_or_else(|| self.wrong_type(value))?;
         list.iter().map(|point| Ok(DVec3::from(self.three(point)?))).collect()
+    }
+
+    /// One loop of points, or a list of loops.
+    pub(super) fn loops(&self, value: &Spanned<DeValue<'_>>) -> Result<Vec<Vec<DVec2>>, Mistake> {
+        let list = value.get_ref().as_array().ok_or_else(|| self.wrong_type(value))?;
+        let inner = |value: &Spanned<DeValue<'_>>| {
+            value.get_ref().as_array().and_then(|a| a.first()).map(|v| v.get_ref().is_array())
+        };
+        let points = |value: &Spanned<DeValue<'_>>| {
+            let list = value.get_ref().as_array().ok_or_else(|| self.wrong_type(value))?;
+            let point = |value| {
+                let [x, y] = self.array(value)?;
+                Ok(DVec2::new(self.float(x)?, self.float(y)?))
+            };
+            list.iter().map(point).collect()
+        };
+        if list.first().and_then(inner).unwrap_or(false) {
+            list.iter().map(points).collect()
+        } else {
+            Ok(vec![points(value)?])
+        }
     }
 
     pub(super) fn whole(&self, value: &Spanned<DeValue<'_>>) -> Result<u32, Mistake> {

@@ -5,7 +5,7 @@ use eframe::egui::{
     Button, Checkbox, Color32, ComboBox, DragValue, Label, Layout, Rect, Response, RichText, Sense,
     Slider, SliderClamping, Ui, UiBuilder, pos2, vec2,
 };
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::badge::badge_ui;
 use super::hints;
@@ -54,6 +54,10 @@ pub(super) fn control_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> Row
     let mut outcome = RowOutcome::default();
     if let Slot::Points(points, _) = slot {
         points_ui(ui, row, points, &mut outcome);
+        return outcome;
+    }
+    if let Slot::Loops(loops, range) = slot {
+        loops_ui(ui, row, loops, *range, &mut outcome);
         return outcome;
     }
     let (name, value, badge) = columns(ui);
@@ -152,7 +156,7 @@ fn value_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> bool {
             explained(label.on_hover_text(text), row, None);
             false
         }
-        Slot::Points(..) | Slot::Image(_) => false,
+        Slot::Points(..) | Slot::Loops(..) | Slot::Image(_) => false,
     }
 }
 
@@ -393,6 +397,33 @@ fn points_ui(ui: &mut Ui, row: &Row<'_>, points: &mut [DVec3], outcome: &mut Row
                 outcome.changed |=
                     vector_ui(ui, row, &name, point, crate::scene::fields::COORDINATE);
             });
+        }
+    });
+    explained(header.header_response, row, None);
+}
+
+/// The corners of an outline's loops, one row each.
+fn loops_ui(
+    ui: &mut Ui,
+    row: &Row<'_>,
+    loops: &mut [Vec<DVec2>],
+    range: Range,
+    outcome: &mut RowOutcome,
+) {
+    let title = format!("{} ({})", row.key, loops.iter().map(Vec::len).sum::<usize>());
+    let header = CollapsingHeader::new(title).id_salt(row.path);
+    let header = header.show(ui, |ui| {
+        badge_ui(ui, row.key, row.cost, BADGE);
+        for (l, points) in loops.iter_mut().enumerate() {
+            for (i, point) in points.iter_mut().enumerate() {
+                ui.horizontal(|ui| {
+                    ui.label(format!("{l}.{i}"));
+                    for (x, axis) in [(&mut point.x, "x"), (&mut point.y, "y")] {
+                        let name = format!("{} {l}.{i} {axis}", row.key);
+                        outcome.changed |= field_ui(ui, row, &name, x, range);
+                    }
+                });
+            }
         }
     });
     explained(header.header_response, row, None);

@@ -390,7 +390,10 @@ fn faces_that_touch_vanish_in_a_merge_and_stay_in_a_union() {
     // An edge and a corner of two blocks touch: nothing is there in between.
     let apart = block(DVec3::new(0.0, 1.0, 0.0), DVec3::new(1.0, 2.0, 1.0));
     let solids = [left, apart, csg(Intersection, &[0, 1])];
-    assert_eq!(ts(&solids, &Ray { origin: DVec3::new(0.0, 0.0, 0.5), direction: DVec3::Y }), [0.0; 0]);
+    assert_eq!(
+        ts(&solids, &Ray { origin: DVec3::new(0.0, 0.0, 0.5), direction: DVec3::Y }),
+        [0.0; 0]
+    );
 }
 
 #[test]
