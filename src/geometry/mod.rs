@@ -55,7 +55,7 @@ use compile::{Owner, Primitives};
 use hierarchy::Hierarchy;
 pub use hierarchy::Stack;
 pub use placement::corners;
-use query::{Closest, Shadow};
+use query::{Closest, Gather, Shadow};
 use surfaces::Surfaces;
 pub use tone::Tone;
 
@@ -152,6 +152,37 @@ impl Geometry {
         let mut query = Closest::new();
         self.traverse(simd, stack, ray, leaving, &mut query);
         query.hit()
+    }
+
+    /// The same, and the `t` of the hit after it, which is right if it is larger by less than one part
+    /// in 10⁸: then surfaces may coincide.
+    #[inline(always)]
+    pub fn first_two<S: Simd>(
+        &self,
+        simd: S,
+        stack: &mut Stack,
+        ray: &Ray,
+        leaving: Option<Leaving>,
+    ) -> Option<(Hit, f64)> {
+        let mut query = Closest::new();
+        self.traverse(simd, stack, ray, leaving, &mut query);
+        query.hit().map(|hit| (hit, query.second()))
+    }
+
+    /// All crossings at `0 < t < t_max` with their primitives, in order; `hits` is cleared first.
+    #[inline(always)]
+    pub fn crossings<S: Simd>(
+        &self,
+        simd: S,
+        stack: &mut Stack,
+        ray: &Ray,
+        t_max: f64,
+        leaving: Option<Leaving>,
+        hits: &mut Vec<(f64, u32)>,
+    ) {
+        hits.clear();
+        self.traverse(simd, stack, ray, leaving, &mut Gather { hits, t_max });
+        hits.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     }
 
     /// What stands between the ray's origin and a light at `0 < t < t_max`.

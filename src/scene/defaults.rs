@@ -90,6 +90,7 @@ impl Material {
             transmit: Rgb::BLACK,
             filter: Rgb::WHITE,
             ior: 1.5,
+            priority: 0,
             fresnel: false,
             gloss: 0.0,
             translucency: 0.0,

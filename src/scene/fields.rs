@@ -261,6 +261,7 @@ pub fn material(material: &mut Material, v: &mut dyn Visit) {
         transmit,
         filter,
         ior,
+        priority,
         fresnel,
         gloss,
         translucency,
@@ -279,6 +280,8 @@ pub fn material(material: &mut Material, v: &mut dyn Visit) {
     v.leaf("transmit", Need::Optional, Slot::Coefficient(transmit, WEIGHT));
     v.leaf("filter", Need::Optional, Slot::Coefficient(filter, COEFFICIENT));
     v.leaf("ior", Need::Optional, Slot::Number(ior, Range::closed(0.1, 10.0)));
+    let most = Range::closed(0.0, f64::from(super::MAX_PRIORITY));
+    v.leaf("priority", Need::Optional, Slot::Whole(priority, most));
     v.leaf("fresnel", Need::Optional, Slot::Flag(fresnel));
     v.leaf("gloss", Need::Optional, Slot::Single(gloss, EXPONENT));
     v.leaf("translucency", Need::Optional, Slot::Single(translucency, EXPONENT));

@@ -129,6 +129,8 @@ pub struct Picture {
 pub const MAX_SIDE: u32 = 65_536;
 /// Largest number of pixels of a picture.
 pub const MAX_PIXELS: u64 = 1 << 28;
+/// Highest priority of a material.
+pub const MAX_PRIORITY: u32 = 1000;
 /// Largest number of materials, and of lights.
 pub const MAX_NAMED: usize = 65_535;
 /// Largest number of quadrangles of a knot: segments along times segments around.
@@ -233,6 +235,9 @@ pub struct Material {
     pub filter: Rgb,
     /// Index of refraction.
     pub ior: f64,
+    /// Which solid is there where several overlap: that of the highest priority; of equals, for what is
+    /// refracted, the one entered last. 0 … [`MAX_PRIORITY`].
+    pub priority: u32,
     /// Whether `reflect` and `transmit` are weighted by Fresnel's reflectance F and 1 − F, as in
     /// Hall's model they always are.
     pub fresnel: bool,

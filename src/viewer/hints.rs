@@ -120,6 +120,7 @@ fn about_form(key: &str) -> &'static str {
         "tube" => "Radius of the tube; the knot's own radius is 1",
         "segments" => "Segments along and around the tube",
         "levels" => "Generations of spheres",
+        "priority" => "Where solids overlap, the one with the highest priority is there",
         "union" => "The solids that it groups; each keeps its whole surface",
         "merge" => "The solids that it joins: surfaces inside of others are not there",
         "intersection" => "The solids that it is the common part of",

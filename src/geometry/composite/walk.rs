@@ -223,7 +223,8 @@ impl Sight<'_> {
         let resting = std::cell::RefCell::default();
         let walk = Walk::new(&moved, nobody, 0.0, &resting);
         let level = self.level;
-        dispatch!(level, simd => leaf.rest.descend(simd, entries, &walk, &mut Gather { hits }));
+        let mut all = Gather { hits, t_max: f64::INFINITY };
+        dispatch!(level, simd => leaf.rest.descend(simd, entries, &walk, &mut all));
         hits.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         hits.iter_mut().for_each(|(t, _)| *t = (*t - back) / length);
         if start != Start::Elsewhere {
