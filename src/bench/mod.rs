@@ -102,7 +102,7 @@ fn traced(
     first: TraceReport,
     trace_only_s: f64,
 ) -> Value {
-    let RayCounts { camera, reflected, transmitted, shadow } = report.rays;
+    let RayCounts { camera, reflected, transmitted, shadow, lost } = report.rays;
     let (transport, forest) = (session.transport(), session.forest());
     let pixels = transport.layout.pixels() as f64;
     let (terms, distinct) = (terms_per_pixel(transport), distinct_terms(transport));
@@ -119,7 +119,7 @@ fn traced(
         "fold_s": report.fold_seconds,
         "keep_over_trace_only": report.seconds / trace_only_s,
         "rays": { "total": report.rays.total(), "camera": camera, "reflected": reflected,
-            "transmitted": transmitted, "shadow": shadow },
+            "transmitted": transmitted, "shadow": shadow, "lost": lost },
         "nodes": report.nodes,
         "terms": distinct,
         "terms_per_pixel": terms,

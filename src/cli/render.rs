@@ -225,12 +225,13 @@ fn edit_stats(assignment: &str, report: &EditReport) -> Value {
 
 /// Ray counts as JSON.
 pub(crate) fn rays(counts: RayCounts) -> Value {
-    let RayCounts { camera, reflected, transmitted, shadow } = counts;
+    let RayCounts { camera, reflected, transmitted, shadow, lost } = counts;
     json!({
         "total": counts.total(),
         "camera": camera,
         "reflected": reflected,
         "transmitted": transmitted,
         "shadow": shadow,
+        "lost": lost,
     })
 }

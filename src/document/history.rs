@@ -144,11 +144,15 @@ impl Visit for Bits {
             Slot::Points(points, _) => {
                 self.0.extend(points.iter().flat_map(|p| p.to_array()).map(f64::to_bits));
             }
+            Slot::Loops(loops, _) => {
+                self.0.extend(loops.iter().flatten().flat_map(|p| p.to_array()).map(f64::to_bits));
+            }
             Slot::Whole(..)
             | Slot::Pair(..)
             | Slot::Flag(_)
             | Slot::Choice(_)
             | Slot::Material(_)
+            | Slot::Solids(_)
             | Slot::Mesh { .. }
             | Slot::Image(_) => {}
         }

@@ -45,7 +45,7 @@ fn changed(text: &str, old: &Scene, new: &Scene, wanted: &[Node]) -> Option<Stri
     if present == wanted {
         return Some(text.to_owned());
     }
-    let names = Names::of(&new.materials);
+    let names = Names::of(new);
     let mut patch =
         Patch { splice: Splice::new(text.to_owned())?, defaults: Defaults::new(&names) };
     for (list, renames) in renames(old, new) {

@@ -114,7 +114,7 @@ impl Difference {
 }
 
 fn differences(before: &Scene, after: &Scene) -> Vec<Difference> {
-    let (old_names, new_names) = (Names::of(&before.materials), Names::of(&after.materials));
+    let (old_names, new_names) = (Names::of(before), Names::of(after));
     let mut all = Vec::new();
     let mut compare = |owner: Owner, old: Vec<Node>, new: Vec<Node>| {
         collect(&owner, "", &old, &new, &mut all);

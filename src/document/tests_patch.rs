@@ -198,10 +198,25 @@ fn random_value(parameter: &Parameter, scene: &Scene, random: &mut Random) -> St
             1 => "[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0.5, 2, 0], [0, 1, 0]]".to_owned(),
             _ => parameter.value.replace("[1", "[3"),
         },
+        Kind::Loops => match random.below(3) {
+            0 => "[[0, 0], [1, 0], [1, 2]]".to_owned(),
+            1 => "[[[0, 0], [9, 0], [9, 9], [0, 9]], [[1, 1], [2, 1], [2, 2]]]".to_owned(),
+            _ => parameter.value.replace("[1", "[3"),
+        },
         Kind::Choice(names) => names[random.below(names.len())].to_owned(),
         Kind::Material => scene.materials[random.below(scene.materials.len())].name.clone(),
+        Kind::Solids => match random.below(2) {
+            0 => format!("[\"{}\"]", scene.solids[random.below(scene.solids.len())].name),
+            _ => parameter.value.clone(),
+        },
         Kind::File => parameter.value.clone(),
     }
+}
+
+/// A shape that reads no file.
+fn some_shape(random: &mut Random) -> Shape {
+    let mut keys = fields::SHAPES.iter().filter(|key| **key != "mesh");
+    Shape::named(keys.nth(random.below(fields::SHAPES.len() - 1)).unwrap())
 }
 
 /// Sets some random parameter to some value that it may have.
@@ -271,14 +286,13 @@ fn restructure(scene: &mut Scene, random: &mut Random) {
         }
         7 if !scene.materials.is_empty() => {
             let index = some(scene.materials.len(), material);
-            let shape = Shape::named(fields::SHAPES[[0, 1, 2, 3, 5, 6][random.below(6)]]);
+            let shape = some_shape(random);
             scene.solids.insert(solid, Solid::new(name, shape, index));
         }
         8 if solid < scene.solids.len() => drop(scene.solids.remove(solid)),
         9 if solid < scene.solids.len() => scene.solids[solid].name = name,
         10 if solid < scene.solids.len() => {
-            let key = fields::SHAPES[[0, 1, 2, 3, 5, 6][random.below(6)]];
-            scene.solids[solid].shape = Shape::named(key);
+            scene.solids[solid].shape = some_shape(random);
         }
         11 => {
             scene.camera.lens = match scene.camera.lens {

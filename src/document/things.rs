@@ -1,6 +1,6 @@
 //! Adds, duplicates, renames and removes lights and materials: each one edit of a scene.
 
-use crate::scene::{Light, LightPlace, Material, Scene};
+use crate::scene::{Light, LightPlace, Material, Scene, Solid};
 
 /// A light or a material of a scene, by its index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -111,7 +111,8 @@ pub fn remove(scene: &mut Scene, thing: Thing) -> Result<(), String> {
 /// The solids made of the material with this index.
 pub fn users(scene: &Scene, material: usize) -> Vec<usize> {
     let solids = scene.solids.iter().enumerate();
-    solids.filter(|(_, solid)| solid.material == material).map(|(i, _)| i).collect()
+    let own = |solid: &Solid| !solid.shape.is_composite() && solid.material == material;
+    solids.filter(|(_, solid)| own(solid)).map(|(i, _)| i).collect()
 }
 
 fn light_names(scene: &Scene) -> Vec<&str> {

@@ -12,7 +12,7 @@ use super::shadow::Site;
 use super::sink::{Side, Sink};
 use super::tree::{BLOCKED, Branch, Ends, LightHit, Node, TileTrees, weights};
 use crate::film::layout::{LANES, Place};
-use crate::geometry::{Hit, Tone};
+use crate::geometry::Tone;
 use crate::progress::Progress;
 use crate::scene::factor::{End, Factor, Kind, PathWeight};
 
@@ -203,7 +203,8 @@ impl Grower<'_> {
             worker.media.clear();
             worker.sample = at;
             let ray = weighed.unwrap_or_else(|| self.eye_ray(eye, at, worker, sink));
-            worker.pending.push(Pending::eye(ray, Known::Hit, Scope::EYE));
+            let medium = self.medium_of_eye(simd, worker, &ray);
+            worker.pending.push(Pending::eye(ray, medium, Known::Hit, Scope::EYE));
             while let Some(next) = worker.pending.pop() {
                 limits.check(sink)?;
                 if next.scope == At::ALL {
@@ -254,8 +255,9 @@ impl Grower<'_> {
     ) -> Result<(), Stop> {
         let recalled = kept.node();
         let KeptNode { t, primitive, lights: _, ends } = *recalled.node;
-        let Arrival { at, length, tone, surface, crossing, eta: _ } =
-            self.arrive(worker, from, Hit { t, primitive });
+        let met = self.recall(simd, worker, from, recalled.node);
+        let Arrival { at, length, tone, surface, crossing, touching, searched, eta: _ } =
+            self.arrive(worker, from, met);
         let fresnel = self.reflectance(at.material, &surface);
         let [mirrored, passed] = weights(fresnel);
         let [to_mirrored, to_passed] = self.states(scope, from.scope, recalled.node);
@@ -278,7 +280,7 @@ impl Grower<'_> {
             |path| blurred(path, sharp, (translucency, -up), sample, ways[1]),
         );
         let of = |branch: fn(&Next) -> Branch| {
-            Ends::new(branch(&reflected), branch(&transmitted), ends.total())
+            Ends::new(branch(&reflected), branch(&transmitted), ends.total()).found(searched)
         };
         let (material, slot, lights) = (at.material, at.slot, 0);
         let (folded, toned) = (of(|next| next.folded), tone.is_some());
@@ -298,7 +300,8 @@ impl Grower<'_> {
             sink.tone(tone);
         }
         if scope.has_lights(from.scope) {
-            let site = Site { at: &at, surface: &surface, path: from.way };
+            let media = [crossing.front, crossing.behind];
+            let site = Site { at: &at, surface: &surface, path: from.way, media, touching };
             let mut recalled = Some(recalled);
             for light in 0..self.lamps.len() as u16 {
                 if scope.has_light(light.into()) {
@@ -335,13 +338,14 @@ impl Grower<'_> {
                 geometric,
                 parent,
                 medium,
+                touching,
                 known,
                 scope,
             };
             worker.pending.push(next);
         };
         queue(transmitted, Side::Transmitted, passed, crossing.behind);
-        queue(reflected, Side::Reflected, mirrored, from.medium);
+        queue(reflected, Side::Reflected, mirrored, crossing.front);
         Ok(())
     }
 

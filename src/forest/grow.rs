@@ -13,6 +13,7 @@ use super::media::{Crossing, Media};
 pub use super::rays::RayCounts;
 use super::sampling::{Effect, ROOT_PATH, Sample};
 use super::scope::At;
+use super::search::{Met, Steps};
 use super::sequence::branch_path;
 use super::shadow::Site;
 use super::sink::{Side, Sink};
@@ -20,7 +21,7 @@ use super::surface::Surface;
 use super::tree::{BEHIND, Branch, Ends, NO_FRESNEL, Node, weights};
 use super::{Before, blur};
 use crate::film::layout::{LANES, Layout, Place};
-use crate::geometry::{Geometry, Hit, Interaction, Leaving, Ray, Stack, Tone};
+use crate::geometry::{Geometry, Interaction, Leaving, Ray, Stack, Tone};
 use crate::progress::{Cancelled, Progress};
 use crate::scene::factor::{End, Factor, FactorValues, Kind, PathWeight};
 use crate::scene::model::{Lobes, Model};
@@ -60,6 +61,13 @@ pub struct Grower<'a> {
     /// Per solid.
     pub(super) lobes: Vec<Lobes>,
     pub(super) models: Vec<Model>,
+    /// Per solid its priority where solids overlap; empty if all have the same.
+    pub(super) priorities: Vec<u32>,
+    pub(super) least_priority: u32,
+    /// Per solid whether it lets light through.
+    pub(super) clear: Vec<bool>,
+    /// Whether the eye may be in something clear.
+    surrounded: bool,
     /// Per material, whether Fresnel weighs its branches.
     weighing: Vec<bool>,
     /// With what the kept trees were grown.
@@ -83,6 +91,7 @@ pub struct Worker {
     pub(super) pending: Vec<Pending>,
     pub(super) crossed: Vec<u32>,
     pub(super) media: Media,
+    pub(super) steps: Steps,
     /// The one that is grown.
     pub(super) sample: Sample,
     /// Rays that this worker cast: what kept trees answer is not cast.
@@ -97,6 +106,10 @@ pub(super) struct Arrival {
     pub(super) tone: Option<Tone>,
     pub(super) surface: Surface,
     pub(super) crossing: Crossing,
+    /// Whether other surfaces coincide with it.
+    pub(super) touching: bool,
+    /// Whether all crossings of the ray were looked at.
+    pub(super) searched: bool,
     /// Index of refraction in front over that behind.
     pub(super) eta: f64,
 }
@@ -130,6 +143,8 @@ pub(super) struct Pending {
     pub(super) geometric: f32,
     pub(super) parent: Option<(u32, Side)>,
     pub(super) medium: u32,
+    /// Whether other surfaces coincide with the one that it starts on.
+    pub(super) touching: bool,
     pub(super) known: Known,
     /// Where it stands in the scope: only what a [scope](super::scope::Scope) names is grown.
     pub(super) scope: At,
@@ -138,7 +153,7 @@ pub(super) struct Pending {
 impl Pending {
     /// A ray from the eye.
     #[inline(always)]
-    pub(super) fn eye(ray: Ray, known: Known, scope: At) -> Pending {
+    pub(super) fn eye(ray: Ray, medium: u32, known: Known, scope: At) -> Pending {
         Pending {
             ray,
             length: 0.0,
@@ -147,7 +162,8 @@ impl Pending {
             path: PathWeight::EYE,
             geometric: 1.0,
             parent: None,
-            medium: Media::OUTSIDE,
+            medium,
+            touching: false,
             known,
             scope,
         }
@@ -204,8 +220,17 @@ impl<'a> Grower<'a> {
     ) -> Grower<'a> {
         let values = FactorValues::new(scene);
         let Before { iors, lobes } = Before::of(scene, geometry);
+        let priorities: Vec<u32> = scene.materials.iter().map(|m| m.priority).collect();
+        let priorities = geometry.of_solids(&priorities);
+        let least_priority = priorities.iter().copied().min().unwrap_or(0);
+        let same = priorities.iter().all(|priority| *priority == least_priority);
+        let clear: Vec<bool> = scene.materials.iter().map(|m| !m.transmit.is_black()).collect();
         Grower {
             geometry,
+            priorities: if same { Vec::new() } else { priorities },
+            least_priority,
+            clear: geometry.of_solids(&clear),
+            surrounded: !scene.clear_around_the_eye().is_empty(),
             opaque: geometry.of_solids(&values.opaque()),
             values,
             lamps: scene.lights.iter().map(Lamp::new).collect(),
@@ -244,7 +269,8 @@ impl<'a> Grower<'a> {
             stack: Stack::new(self.geometry),
             pending: Vec::new(),
             crossed: Vec::new(),
-            media: Media::default(),
+            media: Media::new(&self.priorities),
+            steps: Steps::default(),
             sample: Sample { pixel: [0, 0], index: 0 },
             rays: RayCounts::default(),
         }
@@ -334,12 +360,19 @@ impl<'a> Grower<'a> {
             Some(true) => Known::Hit,
             Some(false) => Known::Missed,
         };
-        worker.pending.push(Pending::eye(ray, known, At::ALL));
+        let medium = self.medium_of_eye(simd, worker, &ray);
+        worker.pending.push(Pending::eye(ray, medium, known, At::ALL));
         while let Some(next) = worker.pending.pop() {
             limits.check(sink)?;
             self.follow_ray(simd, worker, &next, kept, sink)?;
         }
         Ok(())
+    }
+
+    /// The list of solids that a camera ray starts in.
+    #[inline(always)]
+    pub(super) fn medium_of_eye<S: Simd>(&self, simd: S, worker: &mut Worker, ray: &Ray) -> u32 {
+        if self.surrounded { self.surroundings(simd, worker, ray) } else { Media::OUTSIDE }
     }
 
     /// Grows the node that a ray meets, if it meets any.
@@ -360,25 +393,25 @@ impl<'a> Grower<'a> {
             Known::Hit => kept.as_mut().map(Recall::node),
             _ => None,
         };
-        let hit = match (recalled, next.known) {
-            (Some(r), _) => Some(Hit { t: r.node.t, primitive: r.node.primitive }),
+        let met = match (recalled, next.known) {
+            (Some(r), _) => Some(self.recall(simd, worker, next, r.node)),
             (None, Known::Missed) => None,
             (None, _) => {
                 worker.rays.count(next.parent.map(|(_, side)| side));
-                self.geometry.closest_hit(simd, &mut worker.stack, &next.ray, next.leaving)
+                self.meet(simd, worker, next)
             }
         };
-        match (hit, next.parent) {
-            (Some(hit), parent) => {
+        match (met, next.parent) {
+            (Some(met), parent) => {
                 if parent.is_none() {
                     sink.sample(true);
                 }
-                self.node(simd, worker, next, (hit, recalled), sink)?;
+                self.node(simd, worker, next, (met, recalled), sink)?;
             }
             (None, Some((node, side))) => sink.missed(node, side),
             (None, None) => sink.sample(false),
         }
-        if hit.is_none() {
+        if met.is_none() {
             self.sky(&next.ray, sink);
         }
         Ok(())
@@ -386,16 +419,23 @@ impl<'a> Grower<'a> {
 
     /// What a ray finds where it meets a surface.
     #[inline(always)]
-    pub(super) fn arrive(&self, worker: &mut Worker, from: &Pending, hit: Hit) -> Arrival {
+    pub(super) fn arrive(&self, worker: &mut Worker, from: &Pending, met: Met) -> Arrival {
+        let Met { hit, found } = met;
         let mut at = self.geometry.interaction(&worker.stack, &from.ray, hit);
         let length = from.length + hit.t;
         let tone = self.tone(&worker.stack, &mut at, length);
         let mut surface = Surface::new(&at, from.ray.direction);
-        let crossing = worker.media.cross(from.medium, &at, surface.entering);
+        let crossing = match found {
+            None => worker.media.cross(from.medium, &at, surface.entering),
+            Some(found) => worker.media.between(found.media, &at, surface.entering),
+        };
+        worker.rays.lost += u64::from(crossing.lost);
         let eta = crossing.eta(&self.iors);
         let refracted = surface.refract(eta);
         (surface.contrast, surface.refracted) = (crossing.contrast(&self.iors), refracted);
-        Arrival { at, length, tone, surface, crossing, eta }
+        let touching = found.is_some_and(|found| found.touching);
+        let searched = found.is_some();
+        Arrival { at, length, tone, surface, crossing, touching, searched, eta }
     }
 
     /// Stores a node, asks its lights, and queues its branches.
@@ -405,10 +445,12 @@ impl<'a> Grower<'a> {
         simd: S,
         worker: &mut Worker,
         from: &Pending,
-        (hit, mut recalled): (Hit, Option<Recalled<'_>>),
+        (met, mut recalled): (Met, Option<Recalled<'_>>),
         sink: &mut K,
     ) -> Result<(), Stop> {
-        let Arrival { at, length, tone, surface, crossing, eta } = self.arrive(worker, from, hit);
+        let hit = met.hit;
+        let Arrival { at, length, tone, surface, crossing, touching, searched, eta } =
+            self.arrive(worker, from, met);
         let refracted = surface.refracted;
         let total = refracted.is_none();
         let fresnel = self.reflectance(at.material, &surface);
@@ -428,7 +470,8 @@ impl<'a> Grower<'a> {
             branch(&reflected),
             transmitted.as_ref().map_or(Branch::Absent, branch),
             total,
-        );
+        )
+        .found(searched);
         let (material, slot) = (at.material, at.slot);
         let node = Node {
             t: hit.t,
@@ -445,7 +488,8 @@ impl<'a> Grower<'a> {
         if let Some(tone) = tone {
             sink.tone(tone);
         }
-        let site = Site { at: &at, surface: &surface, path: from.way };
+        let media = [crossing.front, crossing.behind];
+        let site = Site { at: &at, surface: &surface, path: from.way, media, touching };
         for light in 0..self.lamps.len() as u16 {
             self.light(simd, worker, &site, light, &mut recalled, sink)?;
         }
@@ -472,6 +516,7 @@ impl<'a> Grower<'a> {
                 geometric,
                 parent,
                 medium,
+                touching,
                 known,
                 scope,
             };
@@ -485,11 +530,11 @@ impl<'a> Grower<'a> {
             let known = known(ends.map(Ends::transmitted), same, transmitted.is_ok());
             queue(transmitted, passed, Side::Transmitted, crossing.behind, known);
         } else if ends.map(Ends::transmitted) == Some(Branch::Grown) {
-            queue(Err(End::Zero), 0.0, Side::Transmitted, from.medium, Known::Dropped);
+            queue(Err(End::Zero), 0.0, Side::Transmitted, crossing.front, Known::Dropped);
         }
         let same = straight && before[0] == gloss;
         let known = known(ends.map(Ends::reflected), same, reflected.is_ok());
-        queue(reflected, mirrored, Side::Reflected, from.medium, known);
+        queue(reflected, mirrored, Side::Reflected, crossing.front, known);
         Ok(())
     }
 

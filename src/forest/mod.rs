@@ -15,6 +15,7 @@ mod media;
 mod rays;
 pub mod sampling;
 pub mod scope;
+mod search;
 mod sequence;
 mod shadow;
 pub mod signature;

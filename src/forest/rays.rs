@@ -15,6 +15,8 @@ pub struct RayCounts {
     pub transmitted: u64,
     /// Towards lights.
     pub shadow: u64,
+    /// Of none of these kinds: how often one left a solid that it was not in, as far as is known.
+    pub lost: u64,
 }
 
 impl RayCounts {
@@ -36,10 +38,11 @@ impl RayCounts {
 
 impl AddAssign for RayCounts {
     fn add_assign(&mut self, o: RayCounts) {
-        let RayCounts { camera, reflected, transmitted, shadow } = o;
+        let RayCounts { camera, reflected, transmitted, shadow, lost } = o;
         self.camera += camera;
         self.reflected += reflected;
         self.transmitted += transmitted;
         self.shadow += shadow;
+        self.lost += lost;
     }
 }

@@ -7,6 +7,7 @@ use super::grow::{Grower, MOST_CROSSED, Stop, Worker};
 use super::kept::{Met, Recalled};
 use super::lamp::Beam;
 use super::lobe::{self, Lit, Lobe};
+use super::search::Sought;
 use super::sequence::Sequence;
 use super::sink::Sink;
 use super::surface::Surface;
@@ -20,6 +21,10 @@ pub(super) struct Site<'a> {
     pub(super) surface: &'a Surface,
     /// The hash of the path that leads to it.
     pub(super) path: u32,
+    /// The lists of solids in front of and behind it.
+    pub(super) media: [u32; 2],
+    /// Whether other surfaces coincide with it.
+    pub(super) touching: bool,
 }
 
 /// How a light's ray reaches a surface.
@@ -105,11 +110,12 @@ impl Grower<'_> {
         &self,
         simd: S,
         worker: &mut Worker,
-        Site { at, surface, path: _ }: &Site<'_>,
+        site: &Site<'_>,
         (light, beam, reach): (u16, &Beam, Reach),
         met: Option<Met<'_>>,
         sink: &mut K,
     ) -> Result<(), Stop> {
+        let Site { at, surface, path: _, media, touching: _ } = site;
         let stopped = LightHit::stopped(light);
         if reach != Reach::Front && self.opaque[at.solid as usize] {
             sink.light(stopped, &[at.solid]);
@@ -122,7 +128,10 @@ impl Grower<'_> {
                 worker.crossed.extend_from_slice(solids);
                 None
             }
-            _ => self.cast_shadow(simd, worker, at, beam),
+            _ => {
+                let medium = media[usize::from(reach != Reach::Front)];
+                self.cast_shadow(simd, worker, site, medium, beam)
+            }
         };
         if let Some(solid) = blocker {
             sink.light(stopped, &[solid]);
@@ -158,11 +167,17 @@ impl Grower<'_> {
         &self,
         simd: S,
         worker: &mut Worker,
-        at: &Interaction,
+        site: &Site<'_>,
+        medium: u32,
         beam: &Beam,
     ) -> Option<u32> {
         worker.rays.shadow += 1;
-        let (ray, leaving) = self.geometry.spawn(at, beam.to_light);
+        let (ray, leaving) = self.geometry.spawn(site.at, beam.to_light);
+        if site.touching || !self.priorities.is_empty() {
+            let (t_max, touching) = (beam.distance, site.touching);
+            let sought = Sought { ray: &ray, leaving: Some(leaving), t_max, touching, medium };
+            return self.search_shadow(simd, worker, sought);
+        }
         let Worker { stack, crossed, .. } = worker;
         self.geometry.occluded(
             simd,

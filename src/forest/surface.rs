@@ -146,6 +146,7 @@ mod tests {
             geometric_normal: DVec3::Z,
             shading_normal: normal,
             solid: 0,
+            body: 0,
             material: 0,
             slot: 0,
             bumped,

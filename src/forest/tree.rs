@@ -40,7 +40,8 @@ const BRANCHES: [Branch; 8] = [
 ];
 
 /// Both branches of a node in a byte: the reflected one in bits 0…2, the transmitted one in bits
-/// 3…5, bit 6 set in total reflection. `0b0_010_000`: reflected grown, transmitted `Zero`.
+/// 3…5, bit 6 set in total reflection, bit 7 if the surface was searched for. `0b0_010_000`: reflected
+/// grown, transmitted `Zero`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ends(u8);
 
@@ -52,8 +53,8 @@ impl Ends {
 
     /// The ends with these bits, or `None` if no ends have them.
     pub fn from_bits(bits: u8) -> Option<Ends> {
-        // Three bits name each of the eight branches.
-        (bits < 128).then_some(Ends(bits))
+        // Three bits name each of the eight branches; the other two say yes or no.
+        Some(Ends(bits))
     }
 
     /// The bits, for files.
@@ -80,6 +81,20 @@ impl Ends {
             Side::Reflected => Ends::new(branch, self.transmitted(), self.total()),
             Side::Transmitted => Ends::new(self.reflected(), branch, self.total()),
         }
+        .found(self.searched())
+    }
+
+    /// The same of a surface that was found by looking at all crossings of its ray, or not.
+    #[inline(always)]
+    pub fn found(self, searched: bool) -> Ends {
+        Ends(self.0 & 127 | u8::from(searched) << 7)
+    }
+
+    /// Whether all crossings of the ray were looked at: surfaces coincide there, or some were passed.
+    /// Then that is done again where kept trees answer.
+    #[inline(always)]
+    pub fn searched(self) -> bool {
+        self.0 & 128 != 0
     }
 
     /// Whether the mirror ray carries the factor of total reflection.
@@ -487,11 +502,18 @@ mod tests {
                     let ends = Ends::new(a, b, total);
                     assert_eq!((ends.reflected(), ends.transmitted(), ends.total()), (a, b, total));
                     assert_eq!(Ends::from_bits(ends.bits()), Some(ends));
+                    let found = ends.found(true);
+                    assert!(found.searched() && !ends.searched());
+                    assert_eq!(
+                        found.with(Side::Reflected, Branch::Zero).found(false).searched(),
+                        false
+                    );
+                    assert!(found.with(Side::Reflected, Branch::Zero).searched());
                 }
             }
         }
         let sound = (0..=255).filter(|bits| Ends::from_bits(*bits).is_some()).count();
-        assert_eq!(sound, 2 * BRANCHES.len() * BRANCHES.len());
+        assert_eq!(sound, 4 * BRANCHES.len() * BRANCHES.len());
         assert_eq!(size_of::<Node>(), 24);
         assert_eq!(size_of::<LightHit>(), 16);
     }

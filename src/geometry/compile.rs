@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::closed::Closed;
+use super::composite::{Chain, Composite, Leaf, Parts};
 use super::generate;
 use super::motion::Moving;
 use super::placement::Placed;
@@ -12,6 +14,7 @@ use super::shear::{Corner, corner};
 use super::uv::Frame;
 use crate::progress::{Cancelled, Progress};
 use crate::scene::mesh::Mesh;
+use crate::scene::seams::{Seams, seams};
 use crate::scene::{Scene, Shape, Solid};
 
 /// Elements handled between two looks at the cancel flag.
@@ -36,6 +39,8 @@ pub(super) enum Kind {
     Plane,
     /// `Primitives::moving`; in the hierarchy they are shapes.
     Moving,
+    /// It is in solids that are made of it, of which the primitive tells which.
+    Leaf,
 }
 
 /// Where a primitive is found.
@@ -71,6 +76,17 @@ pub(super) struct Compiled {
     pub(super) mesh: bool,
 }
 
+/// What knows the surface of a primitive.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Owner<'a> {
+    /// The primitive itself.
+    Still,
+    /// The solid with this index among those that move.
+    Moving(u32, &'a Moving),
+    /// A leaf of a solid made of others.
+    Leaf(&'a Leaf),
+}
+
 /// All primitives, numbered in the order of the solids.
 #[derive(Debug, Default)]
 pub(super) struct Primitives {
@@ -83,6 +99,11 @@ pub(super) struct Primitives {
     pub(super) corners: Vec<Corner>,
     pub(super) normals: Vec<DVec3>,
     pub(super) moving: Vec<Moving>,
+    pub(super) composites: Vec<Composite>,
+    /// Those among them that have no end: they are outside the hierarchy.
+    pub(super) unbounded: Vec<u32>,
+    /// Every composite's first primitive, ascending, with its index.
+    places: Vec<(u32, u32)>,
     pub(super) solids: Vec<Compiled>,
     /// How images lie on each solid.
     pub(super) frames: Vec<Frame>,
@@ -97,24 +118,32 @@ impl Primitives {
     pub(super) fn compile(scene: &Scene, progress: &Progress) -> Result<Primitives, Cancelled> {
         let mut all = Primitives::default();
         let shutter = scene.shutter_time();
-        for solid in &scene.solids {
+        let Parts { plain, made } = Parts::of(scene);
+        for ((solid, chain), made) in scene.solids.iter().zip(plain).zip(made) {
             progress.check()?;
-            match shutter.filter(|_| solid.moves()) {
-                Some(shutter) => all.add_moving(solid, shutter, progress)?,
-                None => all.add(solid, progress)?,
+            match (chain, shutter.filter(|_| solid.moves())) {
+                (None, _) => all.add_nothing(solid),
+                (Some(chain), Some(shutter)) if chain.is_single() => {
+                    all.add_moving(solid, shutter, progress)?;
+                }
+                (Some(chain), _) => all.add(solid, chain.at(0.0), progress)?,
+            }
+            for made in made {
+                all.add_composite(scene, made, progress)?;
             }
         }
         Ok(all)
     }
 
     /// Expands one solid, whose primitives are numbered from `first` on.
-    pub(super) fn alone(
+    pub(super) fn part(
         solid: &Solid,
+        placed: Placed,
         first: u32,
         progress: &Progress,
     ) -> Result<Primitives, Cancelled> {
         let mut all = Primitives { first, ..Primitives::default() };
-        all.add(solid, progress)?;
+        all.add(solid, placed, progress)?;
         Ok(all)
     }
 
@@ -150,7 +179,8 @@ impl Primitives {
     pub(super) fn bytes(&self) -> usize {
         let polygons = self.shapes.iter().map(|shape| match &shape.form {
             Form::Polygon(corners, _) => size_of_val(&**corners),
-            Form::Cuboid(_) | Form::Moving(_) => 0,
+            Form::Closed(closed) => closed.bytes(),
+            Form::Cuboid(_) | Form::Moving(_) | Form::Composite(_) => 0,
             Form::PlacedCuboid(placed, _) | Form::Ellipsoid(placed, _, _) => size_of_val(&**placed),
         });
         size_of_val(&*self.spheres)
@@ -162,20 +192,28 @@ impl Primitives {
             + size_of_val(&*self.corners)
             + size_of_val(&*self.normals)
             + self.moving.iter().map(Moving::bytes).sum::<usize>()
+            + self.composites.iter().map(Composite::bytes).sum::<usize>()
             + size_of_val(&*self.solids)
             + size_of_val(&*self.frames)
             + size_of_val(&*self.solid_of)
     }
 
-    fn add(&mut self, solid: &Solid, progress: &Progress) -> Result<(), Cancelled> {
+    fn add(&mut self, solid: &Solid, placed: Placed, progress: &Progress) -> Result<(), Cancelled> {
         let first = self.number();
-        let placed = Placed::new(&solid.placement);
         let mut order = CORNERS;
         let (item, thin) = match &solid.shape {
             Shape::Sphere { center, radius } => self.sphere(&placed, *center, *radius),
             Shape::Plane { normal, offset } => self.plane(&placed, *normal, *offset),
             Shape::Box { min, max } => self.cuboid(&placed, [*min, *max]),
             Shape::Polygon { points } => self.polygon(&placed, points),
+            Shape::Ellipsoid { center, radii } => {
+                self.sphere(&placed.stretched(*center, *radii), DVec3::ZERO, 1.0)
+            }
+            shape @ (Shape::Cylinder { .. }
+            | Shape::Cone { .. }
+            | Shape::Torus { .. }
+            | Shape::Quadric { .. }
+            | Shape::Prism { .. }) => self.closed(&placed, shape),
             Shape::Mesh { file: _, mesh } => {
                 let (item, thin, turned) = self.mesh(&placed, mesh, progress)?;
                 order = turned;
@@ -190,6 +228,7 @@ impl Primitives {
             Shape::Sphereflake { center, radius, levels } => {
                 self.sphereflake(&placed, generate::sphereflake(*center, *radius, *levels))
             }
+            Shape::Csg { .. } => unreachable!("its operands are compiled"),
         };
         let count = self.count_of(item.kind) as u32 - item.index;
         self.solid_of.resize(self.count() + count as usize, self.solids.len() as u32);
@@ -197,6 +236,57 @@ impl Primitives {
         self.solids.push(Compiled { first, count, item, thin, mesh });
         self.frames.push(Frame::new(solid, placed, order));
         Ok(())
+    }
+
+    /// Adds a solid that has no primitives of its own: others are made of it, or it of others.
+    fn add_nothing(&mut self, solid: &Solid) {
+        let item = Item { kind: Kind::Leaf, index: 0 };
+        let (first, count, thin, mesh) = (self.number(), 0, false, false);
+        self.solids.push(Compiled { first, count, item, thin, mesh });
+        self.frames.push(Frame::new(solid, Placed::new(&solid.placement), CORNERS));
+    }
+
+    /// Adds a solid that is made of others; its primitives are its operands'.
+    fn add_composite(
+        &mut self,
+        scene: &Scene,
+        made: (usize, Chain),
+        progress: &Progress,
+    ) -> Result<(), Cancelled> {
+        let (first, index) = (self.number(), self.composites.len() as u32);
+        let whole = Composite::new(scene, made, first, progress)?;
+        for leaf in &whole.leaves {
+            self.solid_of.resize(self.count() + leaf.count() as usize, leaf.solid);
+        }
+        let [lo, hi] = whole.bounds();
+        if lo.is_finite() && hi.is_finite() {
+            if lo.cmple(hi).all() {
+                self.shapes.push(OtherShape { form: Form::Composite(index), primitive: first });
+            }
+        } else {
+            self.unbounded.push(index);
+        }
+        self.composites.push(whole);
+        self.places.push((first, index));
+        Ok(())
+    }
+
+    /// The composite and its leaf that a primitive belongs to.
+    pub(super) fn leaf(&self, primitive: u32) -> (&Composite, &Leaf) {
+        let place = self.places.partition_point(|(first, _)| *first <= primitive) - 1;
+        let whole = &self.composites[self.places[place].1 as usize];
+        let leaf = whole.leaves.partition_point(|leaf| leaf.first <= primitive) - 1;
+        (whole, &whole.leaves[leaf])
+    }
+
+    /// What knows the surface of a primitive.
+    pub(super) fn owner(&self, primitive: u32) -> Owner<'_> {
+        let item = self.solid(primitive).item;
+        match item.kind {
+            Kind::Moving => Owner::Moving(item.index, &self.moving[item.index as usize]),
+            Kind::Leaf => Owner::Leaf(self.leaf(primitive).1),
+            _ => Owner::Still,
+        }
     }
 
     /// Adds a solid that moves until the shutter closes.
@@ -226,6 +316,7 @@ impl Primitives {
             Kind::Shape => self.shapes.len(),
             Kind::Plane => self.planes.len(),
             Kind::Moving => self.moving.len(),
+            Kind::Leaf => 0,
         }
     }
 
@@ -280,6 +371,13 @@ impl Primitives {
         (item, false)
     }
 
+    fn closed(&mut self, placed: &Placed, shape: &Shape) -> (Item, bool) {
+        let item = self.next(Kind::Shape);
+        let form = Form::Closed(Box::new(Closed::new(placed, shape)));
+        self.shapes.push(OtherShape { form, primitive: self.number() });
+        (item, false)
+    }
+
     fn polygon(&mut self, placed: &Placed, points: &[DVec3]) -> (Item, bool) {
         let item = self.next(Kind::Shape);
         let points: Vec<DVec3> = points.iter().map(|p| placed.point(*p)).collect();
@@ -300,7 +398,7 @@ impl Primitives {
         let item = self.next(Kind::Triangle);
         let (first, corner_base) = (self.number(), self.corners.len() as u32);
         let normal_base = self.normals.len() as u32;
-        let closed = is_closed(&mesh.triangles, progress)?;
+        let closed = seams(&mesh.triangles, progress)? == Seams::Closed;
         // A closed mesh that is wound inside out is turned: its inside is what it encloses.
         let order = if closed && volume(mesh) < 0.0 { [0, 2, 1] } else { CORNERS };
         self.corners.extend(mesh.positions.iter().map(|p| corner(placed.point(*p))));
@@ -333,49 +431,6 @@ pub(super) fn newell_normal(points: &[DVec3]) -> DVec3 {
     points.windows(2).map(|pair| (pair[0] - origin).cross(pair[1] - origin)).sum()
 }
 
-/// Whether every edge is shared by exactly two triangles that run along it in opposite directions.
-fn is_closed(triangles: &[[u32; 3]], progress: &Progress) -> Result<bool, Cancelled> {
-    let edges = |[a, b, c]: [u32; 3]| {
-        let degenerate = a == b || b == c || c == a;
-        [(a, b), (b, c), (c, a)].into_iter().filter(move |_| !degenerate)
-    };
-    // Edges in buckets by their lower vertex: where each bucket ends, then what is in it.
-    let vertices = triangles.iter().flatten().max().map_or(0, |v| *v as usize + 1);
-    let mut ends = vec![0usize; vertices];
-    for chunk in triangles.chunks(CHECK_EVERY) {
-        progress.check()?;
-        chunk.iter().copied().flat_map(edges).for_each(|(p, q)| ends[p.min(q) as usize] += 1);
-    }
-    let mut total = 0;
-    for end in &mut ends {
-        (*end, total) = (total, total + *end);
-    }
-    let mut bucketed = vec![(0, false); total];
-    for chunk in triangles.chunks(CHECK_EVERY) {
-        progress.check()?;
-        for (p, q) in chunk.iter().copied().flat_map(edges) {
-            let end = &mut ends[p.min(q) as usize];
-            bucketed[*end] = (p.max(q), p < q);
-            *end += 1;
-        }
-    }
-    let mut begin = 0;
-    for (i, end) in ends.into_iter().enumerate() {
-        if i % CHECK_EVERY == 0 {
-            progress.check()?;
-        }
-        let bucket = &mut bucketed[begin..end];
-        bucket.sort_unstable();
-        let opposite = |pair: &[(u32, bool)]| matches!(pair, [(a, false), (b, true)] if a == b);
-        let repeated = bucket.windows(2).any(|pair| pair[0] == pair[1]);
-        if repeated || !bucket.chunks(2).all(opposite) {
-            return Ok(false);
-        }
-        begin = end;
-    }
-    Ok(total > 0)
-}
-
 /// Six times the signed volume that a closed mesh encloses.
 fn volume(mesh: &Mesh) -> f64 {
     let origin = mesh.positions.first().copied().unwrap_or_default();
@@ -386,21 +441,6 @@ fn volume(mesh: &Mesh) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
-
-    #[test]
-    fn closed_means_every_edge_twice_and_opposite() {
-        let closed = |t: &[[u32; 3]]| is_closed(t, &Progress::default()).unwrap();
-        assert!(closed(&TETRAHEDRON));
-        assert!(!closed(&TETRAHEDRON[..3]));
-        let mut turned = TETRAHEDRON;
-        turned[2].swap(0, 1);
-        assert!(!closed(&turned));
-        let doubled = [TETRAHEDRON, TETRAHEDRON].concat();
-        assert!(!closed(&doubled));
-        assert!(!closed(&[]));
-    }
 
     #[test]
     fn axis_normals_are_exact() {

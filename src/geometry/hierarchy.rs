@@ -29,7 +29,7 @@ impl Stack {
     /// Scratch that is deep enough for `geometry`, and for any other.
     pub fn new(geometry: &super::Geometry) -> Stack {
         assert!(geometry.hierarchy.stack_needed() <= STACK, "build bounds the depth");
-        let moment = RefCell::new(Moment::new(geometry.primitives.moving.len(), 0.0));
+        let moment = RefCell::new(Moment::new(&geometry.primitives, 0.0));
         Stack { moment, ..Stack::default() }
     }
 
@@ -37,6 +37,11 @@ impl Stack {
     /// nothing moves.
     pub fn set_time(&mut self, time: f64) {
         self.moment.get_mut().time = time;
+    }
+
+    /// The time of the rays that are asked about.
+    pub(super) fn time(&self) -> f64 {
+        self.moment.borrow().time
     }
 }
 
@@ -213,7 +218,9 @@ impl Hierarchy {
                 Child::new(Target::Triangles, packets.add_triangles(frame, all, items))
             }
             Kind::Shape => Child::new(Target::Shapes, packets.add_shapes(items)),
-            Kind::Plane | Kind::Moving => unreachable!("neither is an item of the hierarchy"),
+            Kind::Plane | Kind::Moving | Kind::Leaf => {
+                unreachable!("none is an item of the hierarchy")
+            }
         }
     }
 }
@@ -302,9 +309,13 @@ fn box_about(all: &Primitives, item: Item, center: DVec3) -> [DVec3; 2] {
                 around(placed.point(*middle), placed.sphere_extent(*radius))
             }
             Form::Polygon(corners, _) => box_of_points(corners.iter().map(|c| point(c) - center)),
+            Form::Closed(closed) => closed.bounds().map(|c| c - center),
             Form::Moving(index) => all.moving[*index as usize].bounds().map(|c| c - center),
+            Form::Composite(index) => all.composites[*index as usize].bounds().map(|c| c - center),
         },
-        Kind::Plane | Kind::Moving => unreachable!("neither is an item of the hierarchy"),
+        Kind::Plane | Kind::Moving | Kind::Leaf => {
+            unreachable!("none is an item of the hierarchy")
+        }
     }
 }
 

@@ -16,10 +16,16 @@ impl Geometry {
     pub fn interaction(&self, stack: &Stack, ray: &Ray, hit: Hit) -> Interaction {
         let all = &self.primitives;
         let solid = all.solid(hit.primitive);
+        let mut body = all.solid_index(hit.primitive);
         let ((point, geometric_normal, smooth), rest) = match solid.item.kind {
             Kind::Moving => {
                 let index = solid.item.index;
                 all.moving[index as usize].surface(index, &stack.moment, ray, hit)
+            }
+            Kind::Leaf => {
+                let (whole, leaf) = all.leaf(hit.primitive);
+                body = whole.solid;
+                leaf.surface(stack.time(), ray, hit)
             }
             _ => {
                 let surface = all.surface(solid, ray, hit);
@@ -36,6 +42,7 @@ impl Geometry {
             geometric_normal,
             shading_normal,
             solid: solid_index,
+            body,
             material,
             rest,
             slot: checker.map_or(0, |size| checker_slot(rest, size)),
@@ -141,12 +148,16 @@ fn form_surface(form: &Form, ray: &Ray, t: f64) -> Surface {
             let at = on_plane + (from_corner - *normal * normal.dot(from_corner));
             (snap(at, *normal, on_plane), *normal, None)
         }
-        Form::Moving(_) => unreachable!("it has primitives of its own"),
+        Form::Closed(closed) => {
+            let (point, normal) = closed.surface(ray, t);
+            (point, normal, None)
+        }
+        Form::Moving(_) | Form::Composite(_) => unreachable!("it has primitives of its own"),
     }
 }
 
 /// Point and outward normal of the face that the ray meets at `t`, both in the box's space.
-fn cuboid_surface(o: DVec3, d: DVec3, corners: &[DVec3; 2], t: f64) -> (DVec3, DVec3) {
+pub(super) fn cuboid_surface(o: DVec3, d: DVec3, corners: &[DVec3; 2], t: f64) -> (DVec3, DVec3) {
     let (near, far) = cuboid_faces(o, d, corners);
     let [min, max] = *corners;
     let (axis, entering) = if t == near.0 { (near.1, true) } else { (far.1, false) };
@@ -168,7 +179,7 @@ impl Primitives {
             Kind::Triangle => triangle_surface(self, index, ray, hit.t),
             Kind::Shape => form_surface(&self.shapes[index].form, ray, hit.t),
             Kind::Plane => plane_surface(&self.planes[index], ray, hit.t),
-            Kind::Moving => unreachable!("it has primitives of its own"),
+            Kind::Moving | Kind::Leaf => unreachable!("it has primitives of its own"),
         }
     }
 

@@ -7,7 +7,11 @@
 
 mod binary;
 mod bump;
+mod closed;
 mod compile;
+mod composite;
+mod crossings;
+mod frustum;
 mod generate;
 mod hierarchy;
 mod interaction;
@@ -18,9 +22,13 @@ mod pattern;
 mod placement;
 mod plan;
 mod primitive;
+mod prism;
+mod quadratic;
+mod quadric;
 mod query;
 mod shear;
 mod sky;
+mod spans;
 mod surfaces;
 #[cfg(test)]
 mod testing;
@@ -32,6 +40,7 @@ mod tests_acne;
 mod tests_motion;
 mod texel;
 mod tone;
+mod torus;
 mod traverse;
 mod uv;
 
@@ -42,11 +51,11 @@ use glam::DVec3;
 
 use crate::progress::{Cancelled, Progress};
 use crate::scene::Scene;
-use compile::Primitives;
+use compile::{Owner, Primitives};
 use hierarchy::Hierarchy;
 pub use hierarchy::Stack;
 pub use placement::corners;
-use query::{Closest, Shadow};
+use query::{Closest, Gather, Shadow};
 use surfaces::Surfaces;
 pub use tone::Tone;
 
@@ -88,8 +97,10 @@ pub struct Interaction {
     pub geometric_normal: DVec3,
     /// Unit, on the side of the geometric normal: a mesh's smooth normal if it has one.
     pub shading_normal: DVec3,
-    /// Index into `Scene::solids`.
+    /// Index into `Scene::solids`: the operand whose surface it is, of a solid made of others.
     pub solid: u32,
+    /// Index into `Scene::solids` of what it bounds: the whole, of a solid made of others.
+    pub body: u32,
     /// Index into `Scene::materials`.
     pub material: u16,
     /// Slot of the material's paint, if it shows whole slots.
@@ -150,6 +161,37 @@ impl Geometry {
         query.hit()
     }
 
+    /// [`Geometry::closest_hit`], and the `t` of the hit after it, which is right if it is larger by less than one part
+    /// in 10⁸: then surfaces may coincide.
+    #[inline(always)]
+    pub fn first_two<S: Simd>(
+        &self,
+        simd: S,
+        stack: &mut Stack,
+        ray: &Ray,
+        leaving: Option<Leaving>,
+    ) -> Option<(Hit, f64)> {
+        let mut query = Closest::new();
+        self.traverse(simd, stack, ray, leaving, &mut query);
+        query.hit().map(|hit| (hit, query.second()))
+    }
+
+    /// All crossings at `0 < t < t_max` with their primitives, in order; `hits` is cleared first.
+    #[inline(always)]
+    pub fn crossings<S: Simd>(
+        &self,
+        simd: S,
+        stack: &mut Stack,
+        ray: &Ray,
+        t_max: f64,
+        leaving: Option<Leaving>,
+        hits: &mut Vec<(f64, u32)>,
+    ) {
+        hits.clear();
+        self.traverse(simd, stack, ray, leaving, &mut Gather { hits, t_max });
+        hits.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    }
+
     /// What stands between the ray's origin and a light at `0 < t < t_max`.
     ///
     /// Returns the solid of an opaque surface if there is one (`opaque` is indexed by solid).
@@ -192,16 +234,19 @@ impl Geometry {
     /// `None` if it is that of its slot. A piece of the surface `footprint` wide is looked at.
     pub fn finish(&self, stack: &Stack, at: &mut Interaction, footprint: f64) -> Option<Tone> {
         let look = self.surfaces.look(at.material);
-        let moving = self.primitives.moving(at.solid);
-        let uv = || match moving {
-            None => self.primitives.uv(at.solid, at),
-            Some((index, moving)) => moving.uv(index, &stack.moment, at),
+        let owner = self.primitives.owner(at.primitive);
+        let uv = || match owner {
+            Owner::Still => self.primitives.uv(at.solid, at),
+            Owner::Moving(index, moving) => moving.uv(index, &stack.moment, at),
+            Owner::Leaf(leaf) => leaf.uv(stack.time(), at),
         };
         let mut gradient = look.relief.gradient(at.rest, footprint, uv);
         let tone = look.pattern.tone(at.rest, footprint, uv);
-        if let Some((index, moving)) = moving {
-            gradient = moving.turned(index, &stack.moment, gradient);
-        }
+        gradient = match owner {
+            Owner::Still => gradient,
+            Owner::Moving(index, moving) => moving.turned(index, &stack.moment, gradient),
+            Owner::Leaf(leaf) => leaf.turned(stack.time(), gradient),
+        };
         if let Some(normal) = bump::bent(at.shading_normal, gradient) {
             (at.shading_normal, at.bumped) = (normal, true);
         }

@@ -7,9 +7,10 @@ use fearless_simd::{Level, dispatch};
 use glam::{DMat3, DVec3};
 
 use super::compile::{Compiled, Primitives};
+use super::composite::Lists;
 use super::hierarchy::{Hierarchy, STACK};
 use super::interaction::Surface;
-use super::placement::rotation;
+use super::placement::{Placed, rotation};
 use super::query::Query;
 use super::surfaces::Surfaces;
 use super::traverse::Walk;
@@ -35,7 +36,7 @@ pub(super) struct Moving {
 
 /// Where a moving solid is at one time.
 #[derive(Clone, Copy, Debug)]
-struct Pose {
+pub(super) struct Pose {
     time: f64,
     /// The linear part of world_from_rest, a rotation.
     turn: DMat3,
@@ -48,18 +49,22 @@ struct Pose {
 pub(super) struct Moment {
     /// 0 … 1.
     pub(super) time: f64,
-    /// As those of the stack; `None` where nothing moves.
-    entries: Option<Box<[u64; STACK]>>,
+    /// As those of the stack; `None` where no solid has a hierarchy of its own.
+    pub(super) entries: Option<Box<[u64; STACK]>>,
+    /// For what is made of others.
+    pub(super) lists: Lists,
     /// Per moving solid the pose that was asked for last.
-    poses: Vec<Pose>,
+    pub(super) poses: Vec<Pose>,
 }
 
 impl Moment {
-    /// For so many moving solids.
-    pub(super) fn new(moving: usize, time: f64) -> Moment {
+    /// For these solids.
+    pub(super) fn new(all: &Primitives, time: f64) -> Moment {
+        let moving = all.moving.len();
         let unknown = Pose { time: f64::NAN, turn: DMat3::IDENTITY, origin: DVec3::ZERO };
-        let entries = (moving > 0).then(|| Box::new([0; STACK]));
-        Moment { time, entries, poses: vec![unknown; moving] }
+        let within = moving > 0 || !all.composites.is_empty();
+        let entries = within.then(|| Box::new([0; STACK]));
+        Moment { time, entries, lists: Lists::default(), poses: vec![unknown; moving] }
     }
 }
 
@@ -92,7 +97,8 @@ impl Moving {
         let Solid { name: _, shape: _, material: _, placement, motion } = solid;
         let resting = Placement { scale: placement.scale, ..Placement::default() };
         let resting = Solid { placement: resting, ..solid.clone() };
-        let primitives = Primitives::alone(&resting, first, progress)?;
+        let placed = Placed::new(&resting.placement);
+        let primitives = Primitives::part(&resting, placed, first, progress)?;
         let hierarchy = Hierarchy::build(&primitives, progress)?;
         let bounds = swept(placement, motion, shutter, hierarchy.bounds().unwrap_or_default());
         let (primitives, hierarchy) = (Arc::new(primitives), Arc::new(hierarchy));

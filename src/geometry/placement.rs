@@ -1,7 +1,8 @@
 //! World and object space of a placed solid: `world = linear · object + translation`.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
+use super::compile::exact_normalize;
 use crate::scene::{Placement, Shape, Solid};
 
 /// A placement ready for points, normals and rays.
@@ -32,6 +33,47 @@ impl Placed {
             inverse: inverse_scale * rotation.transpose(),
             translation: *translate,
             similarity: (scale.x == scale.y && scale.y == scale.z).then_some(scale.x),
+        }
+    }
+
+    /// The placement of what is placed by `inner` in this one's object space.
+    pub(super) fn of(&self, inner: &Placed) -> Placed {
+        Placed {
+            linear: self.linear * inner.linear,
+            inverse: inner.inverse * self.inverse,
+            translation: self.point(inner.translation),
+            similarity: self.similarity.zip(inner.similarity).map(|(a, b)| a * b),
+        }
+    }
+
+    /// The frame of an object's part whose z axis goes from one of its points to another, with the
+    /// distance between them. Exactly parallel to the axes if the points' difference is.
+    pub(super) fn along(&self, from: DVec3, to: DVec3) -> (Placed, f64) {
+        let z = exact_normalize(to - from);
+        let across = if z.y.abs() > z.x.abs() && z.y.abs() > z.z.abs() {
+            z.cross(DVec3::Z) * z.y.signum()
+        } else {
+            DVec3::Y.cross(z)
+        };
+        let x = exact_normalize(across);
+        let frame = DMat3::from_cols(x, exact_normalize(z.cross(x)), z);
+        let placed = Placed {
+            linear: self.linear * frame,
+            inverse: frame.transpose() * self.inverse,
+            translation: self.point(from),
+            similarity: self.similarity,
+        };
+        (placed, (to - from).length())
+    }
+
+    /// The frame in which an ellipsoid of the object is the unit sphere.
+    pub(super) fn stretched(&self, center: DVec3, radii: DVec3) -> Placed {
+        let even = radii.x == radii.y && radii.y == radii.z;
+        Placed {
+            linear: self.linear * DMat3::from_diagonal(radii),
+            inverse: DMat3::from_diagonal(radii.recip()) * self.inverse,
+            translation: self.point(center),
+            similarity: self.similarity.filter(|_| even).map(|scale| scale * radii.x),
         }
     }
 
@@ -82,6 +124,11 @@ impl Placed {
         self.rows().map(|row| row.length() * radius).into()
     }
 
+    /// World half extents of the object's disc of `radius` across z.
+    pub(super) fn disc_extent(&self, radius: f64) -> DVec3 {
+        self.rows().map(|row| row.truncate().length() * radius).into()
+    }
+
     /// A ray in object space. The direction is *not* of unit length: `t` stays the world's.
     #[inline(always)]
     pub(super) fn ray_to_object(&self, origin: DVec3, direction: DVec3) -> (DVec3, DVec3) {
@@ -121,18 +168,41 @@ fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
 /// Corners around a solid that has some: its box in its own frame, in world space, at the beginning
 /// of its motion. `None` of an infinite plane and of what is made of many parts.
 pub fn corners(solid: &Solid) -> Option<Vec<DVec3>> {
+    let mut placed = Placed::new(&solid.placement);
     let [min, max] = match &solid.shape {
         Shape::Sphere { center, radius } => [*center - *radius, *center + *radius],
-        Shape::Box { min, max } => [*min, *max],
+        Shape::Ellipsoid { center, radii } => [*center - *radii, *center + *radii],
+        Shape::Box { min, max } | Shape::Quadric { min, max, .. } => [*min, *max],
+        Shape::Cylinder { from, to, radius } => {
+            let (frame, height) = placed.along(*from, *to);
+            placed = frame;
+            [DVec3::new(-radius, -radius, 0.0), DVec3::new(*radius, *radius, height)]
+        }
+        Shape::Cone { from, to, radius, tip } => {
+            let (frame, height) = placed.along(*from, *to);
+            placed = frame;
+            let wide = radius.max(*tip);
+            [DVec3::new(-wide, -wide, 0.0), DVec3::new(wide, wide, height)]
+        }
+        Shape::Torus { major, minor } => {
+            let half = DVec3::new(major + minor, major + minor, *minor);
+            [-half, half]
+        }
+        Shape::Prism { outline, bottom, top } => {
+            let all = outline.iter().flatten();
+            let [lo, hi] = all
+                .fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[a, b], p| [a.min(*p), b.max(*p)]);
+            [lo.extend(*bottom), hi.extend(*top)]
+        }
         Shape::Polygon { points } => points
             .iter()
             .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[a, b], p| [a.min(*p), b.max(*p)]),
         Shape::Plane { .. }
         | Shape::Mesh { .. }
         | Shape::Knot { .. }
+        | Shape::Csg { .. }
         | Shape::Sphereflake { .. } => return None,
     };
-    let placed = Placed::new(&solid.placement);
     let corner = |i: u32| {
         let pick =
             |bit: u32, axis: fn(DVec3) -> f64| axis(if i >> bit & 1 == 0 { min } else { max });

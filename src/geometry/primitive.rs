@@ -7,6 +7,7 @@
 use glam::DVec3;
 
 use super::Ray;
+use super::closed::Closed;
 use super::placement::Placed;
 use super::shear::{Corner, Shear, point};
 
@@ -83,8 +84,12 @@ pub(super) enum Form {
     Ellipsoid(Box<Placed>, DVec3, f64),
     /// A flat polygon in world space, with its unit normal.
     Polygon(Box<[Corner]>, DVec3),
+    /// One of the solids with a frame and functions of their own.
+    Closed(Box<Closed>),
     /// All of the solid with this index among those that move, which has primitives of its own.
     Moving(u32),
+    /// All of the one with this index among those made of others.
+    Composite(u32),
 }
 
 impl Sphere {
@@ -154,7 +159,8 @@ impl Form {
                 Start::Elsewhere => polygon_root(ray, shear, corners, *normal),
                 Start::Outside | Start::Inside => Roots::NONE,
             },
-            Form::Moving(_) => Roots::NONE,
+            // They meet rays themselves.
+            Form::Closed(_) | Form::Moving(_) | Form::Composite(_) => Roots::NONE,
         }
     }
 }

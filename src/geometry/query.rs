@@ -18,25 +18,63 @@ pub(super) trait Query {
     fn is_done(&self) -> bool;
 }
 
+/// All crossings, in no order.
+#[derive(Debug)]
+pub(super) struct Gather<'a> {
+    /// `t` and primitive of each.
+    pub(super) hits: &'a mut Vec<(f64, u32)>,
+    /// Crossings from here on do not count.
+    pub(super) t_max: f64,
+}
+
+impl Query for Gather<'_> {
+    const ALL: bool = true;
+
+    fn limit(&self) -> f64 {
+        self.t_max
+    }
+
+    fn offer(&mut self, t: f64, primitive: u32) {
+        if t < self.t_max {
+            self.hits.push((t, primitive));
+        }
+    }
+
+    fn is_done(&self) -> bool {
+        false
+    }
+}
+
+/// Crossings up to so many times the smallest `t` are looked at, so that equal ones are not missed.
+const HARDLY_FARTHER: f64 = 1.0 + 1e-8;
+
 /// The smallest `t`; of equal ones the lowest primitive.
 #[derive(Debug)]
 pub(super) struct Closest {
     t: f64,
     primitive: u32,
+    /// The nearest of those that are not the closest, if it is hardly farther.
+    second: f64,
 }
 
 impl Closest {
     /// Nothing met yet.
     #[inline(always)]
     pub(super) fn new() -> Closest {
-        Closest { t: f64::INFINITY, primitive: u32::MAX }
+        Closest { t: f64::INFINITY, primitive: u32::MAX, second: f64::INFINITY }
     }
 
     /// What was met.
     #[inline(always)]
     pub(super) fn hit(&self) -> Option<Hit> {
-        let Closest { t, primitive } = *self;
+        let Closest { t, primitive, second: _ } = *self;
         (t < f64::INFINITY).then_some(Hit { t, primitive })
+    }
+
+    /// The `t` of the second one: right if it is larger by less than one part in 10⁸.
+    #[inline(always)]
+    pub(super) fn second(&self) -> f64 {
+        self.second
     }
 }
 
@@ -45,13 +83,15 @@ impl Query for Closest {
 
     #[inline(always)]
     fn limit(&self) -> f64 {
-        self.t
+        self.t * HARDLY_FARTHER
     }
 
     #[inline(always)]
     fn offer(&mut self, t: f64, primitive: u32) {
         if t < self.t || (t == self.t && primitive < self.primitive) {
-            *self = Closest { t, primitive };
+            *self = Closest { t, primitive, second: self.t };
+        } else if t < self.second {
+            self.second = t;
         }
     }
 

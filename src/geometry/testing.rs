@@ -65,6 +65,7 @@ pub(super) fn scene(solids: Vec<Solid>) -> Scene {
         transmit: Rgb::BLACK,
         filter: Rgb::WHITE,
         ior: 1.0,
+        priority: 0,
         fresnel: false,
         gloss: 0.0,
         translucency: 0.0,

@@ -149,6 +149,9 @@ impl Geometry {
                 query.offer(t, plane.primitive);
             }
         }
+        for &index in &self.primitives.unbounded {
+            self.primitives.composites[index as usize].meet(simd.level(), &walk, query);
+        }
         self.descend(simd, entries, &walk, query);
     }
 
@@ -278,19 +281,22 @@ impl Geometry {
             self.primitives.moving[index as usize].meet(level, index, walk, query);
             return;
         }
+        if let Form::Composite(index) = shape.form {
+            self.primitives.composites[index as usize].meet(level, walk, query);
+            return;
+        }
         let start = walk.leaving.start_of(shape.primitive);
+        if let Form::Closed(closed) = &shape.form {
+            closed.meet(walk.ray, start, shape.primitive, query);
+            return;
+        }
         offer_roots(shape.form.roots(walk.ray, &walk.shear, start), shape.primitive, query);
     }
 
     #[inline(always)]
     fn departure(&self, leaving: Option<Leaving>) -> Departure {
         let Some(Leaving { primitive, inside }) = leaving else {
-            return Departure {
-                primitive: u32::MAX,
-                start: Start::Elsewhere,
-                mesh: (0, 0),
-                closed: false,
-            };
+            return Departure::NONE;
         };
         let solid = self.primitives.solid(primitive);
         Departure {
@@ -310,13 +316,16 @@ impl Geometry {
         query: &mut Q,
     ) {
         let all = &self.primitives;
-        let moment = RefCell::new(Moment::new(all.moving.len(), time));
+        let moment = RefCell::new(Moment::new(all, time));
         let walk = Walk::new(ray, self.departure(leaving), 0.0, &moment);
         for plane in &all.planes {
             let t = plane.root(ray, walk.leaving.start_of(plane.primitive));
             if t > 0.0 && t < f64::INFINITY {
                 query.offer(t, plane.primitive);
             }
+        }
+        for &index in &all.unbounded {
+            all.composites[index as usize].meet(Level::new(), &walk, query);
         }
         (0..all.spheres.len()).for_each(|i| self.sphere(i, &walk, query));
         (0..all.triangles.len()).for_each(|i| self.triangle(i, &walk, query));
@@ -325,6 +334,22 @@ impl Geometry {
 }
 
 impl Departure {
+    /// From nowhere.
+    pub(super) const NONE: Departure =
+        Departure { primitive: u32::MAX, start: Start::Elsewhere, mesh: (0, 0), closed: false };
+
+    /// How the ray stands to a solid of `count` primitives from `first` on; `turned` if what it
+    /// leaves is that solid's complement.
+    #[inline(always)]
+    pub(super) fn start_in(&self, first: u32, count: u32, turned: bool) -> Start {
+        match self.start {
+            _ if self.primitive.wrapping_sub(first) >= count => Start::Elsewhere,
+            Start::Inside if turned => Start::Outside,
+            Start::Outside if turned => Start::Inside,
+            start => start,
+        }
+    }
+
     #[inline(always)]
     fn start_of(&self, primitive: u32) -> Start {
         if primitive == self.primitive { self.start } else { Start::Elsewhere }
@@ -344,7 +369,7 @@ fn splat3<S: Simd>(simd: S, v: DVec3) -> [f32x8<S>; 3] {
 
 /// Offers the crossings with `t > 0`; only the first one unless the query wants all.
 #[inline(always)]
-fn offer_roots<Q: Query>(Roots { near, far }: Roots, primitive: u32, query: &mut Q) {
+pub(super) fn offer_roots<Q: Query>(Roots { near, far }: Roots, primitive: u32, query: &mut Q) {
     if near > 0.0 {
         query.offer(near, primitive);
         if !Q::ALL {

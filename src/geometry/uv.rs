@@ -7,7 +7,6 @@ use glam::{DVec2, DVec3};
 
 use super::Interaction;
 use super::compile::{Compiled, Kind, Primitives, exact_normalize, newell_normal};
-use super::motion::Moving;
 use super::placement::Placed;
 use super::primitive::Form;
 use super::shear::point;
@@ -42,6 +41,8 @@ enum Chart {
     Block { min: DVec3, max: DVec3 },
     /// What the mesh file says.
     Mesh { mesh: Arc<Mesh>, order: [usize; 3] },
+    /// What the solid says, in its own frame.
+    Closed,
     /// Along a knot's tube and around it.
     Tube { along: u32, around: u32, order: [usize; 3] },
 }
@@ -53,6 +54,14 @@ impl Frame {
     pub(super) fn new(solid: &Solid, placed: Placed, order: [usize; 3]) -> Frame {
         let chart = match &solid.shape {
             Shape::Sphere { .. } | Shape::Sphereflake { .. } => Chart::Ball,
+            Shape::Ellipsoid { center, radii } => {
+                return Frame { placed: placed.stretched(*center, *radii), chart: Chart::Ball };
+            }
+            Shape::Cylinder { .. }
+            | Shape::Cone { .. }
+            | Shape::Torus { .. }
+            | Shape::Quadric { .. }
+            | Shape::Prism { .. } => Chart::Closed,
             Shape::Plane { normal, offset } => {
                 let normal = exact_normalize(*normal);
                 Chart::Flat { origin: normal * *offset, axes: axes(normal) }
@@ -67,6 +76,8 @@ impl Frame {
             Shape::Knot { turns: _, tube: _, segments: [along, around] } => {
                 Chart::Tube { along: *along, around: *around, order }
             }
+            // Its operands have charts of their own.
+            Shape::Csg { .. } => Chart::Ball,
         };
         Frame { placed, chart }
     }
@@ -104,14 +115,6 @@ fn extent(length: f64) -> f64 {
 }
 
 impl Primitives {
-    /// The solid with this index if it moves, and its place among those that do.
-    #[inline(always)]
-    pub(super) fn moving(&self, solid: u32) -> Option<(u32, &Moving)> {
-        let item = self.solids[solid as usize].item;
-        let place = || (item.index, &self.moving[item.index as usize]);
-        (item.kind == Kind::Moving).then(place)
-    }
-
     /// u and v at a point of the solid with this index, which does not move.
     pub(super) fn uv(&self, solid: u32, at: &Interaction) -> Uv {
         let solid = solid as usize;
@@ -127,9 +130,14 @@ impl Primitives {
             Chart::Block { min, max } => {
                 let p = placed.point_to_object(at.point);
                 let normal = placed.normal_to_object(at.geometric_normal);
-                let [u, v] = face(normal, [*min, *max])
-                    .map(|(from, axis)| ((p - from).dot(axis), placed.normal(axis)));
-                Uv { at: [u.0, v.0], gradients: [u.1, v.1], poles: false }
+                block(p, normal, [*min, *max], placed)
+            }
+            Chart::Closed => {
+                let index = (solid.item.index + (at.primitive - solid.first)) as usize;
+                match &self.shapes[index].form {
+                    Form::Closed(closed) => closed.uv(at.point, at.geometric_normal),
+                    _ => unreachable!("the compiler made it so"),
+                }
             }
             Chart::Mesh { mesh, order } => {
                 let triangle = (at.primitive - solid.first) as usize;
@@ -192,6 +200,20 @@ impl Primitives {
 pub(super) fn longitude_latitude(out: DVec3, flat: f64) -> [f64; 2] {
     let u = libm::atan2(out.y, out.x) / TAU;
     [if u < 0.0 { u + 1.0 } else { u }, 0.5 + libm::atan2(out.z, flat) / PI]
+}
+
+/// u around the z axis, 0 at +x and growing towards +y, with its gradient.
+pub(super) fn longitude(out: DVec2) -> (f64, DVec3) {
+    let u = libm::atan2(out.y, out.x) / TAU;
+    let around = DVec3::new(-out.y, out.x, 0.0) / (TAU * out.length_squared());
+    (if u < 0.0 { u + 1.0 } else { u }, if around.is_finite() { around } else { DVec3::ZERO })
+}
+
+/// u and v of a point of a box whose faces show the whole image each.
+pub(super) fn block(p: DVec3, normal: DVec3, corners: [DVec3; 2], placed: &Placed) -> Uv {
+    let [u, v] =
+        face(normal, corners).map(|(from, axis)| ((p - from).dot(axis), placed.normal(axis)));
+    Uv { at: [u.0, v.0], gradients: [u.1, v.1], poles: false }
 }
 
 /// The corner where u and v of a box's face begin, and their gradients, by the face's normal.

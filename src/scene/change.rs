@@ -72,6 +72,9 @@ impl Change {
             change.casts |= material.weighs_branches() && new.trace.cutoff < trace.cutoff;
         }
         change.form(solids.len() != new.solids.len(), "the number of solids");
+        // Rays from within something clear begin with it.
+        let around = old.clear_around_the_eye() != new.clear_around_the_eye();
+        change.ray(around, "what the eye is in");
         change.lights(lights, &new.lights);
         change.materials = matched(materials, &new.materials, |m| &m.name);
         for (i, material) in new.materials.iter().enumerate() {
@@ -285,10 +288,12 @@ impl Change {
             transmit,
             filter,
             ior,
+            priority,
             fresnel: _,
             gloss: _,
             translucency: _,
         } = old;
+        self.ray(*priority != new.priority, "priority");
         self.paint(before, paint, &new.paint);
         self.bump(before, bump, new);
         let local = *kloc != new.kloc || *ambient != new.ambient || *diffuse != new.diffuse;
@@ -383,8 +388,13 @@ impl Change {
         new: &Solid,
         new_material: Option<&Material>,
     ) {
+        if new.shape.is_composite() {
+            return;
+        }
         let before = old.material as u16;
         let differs = self.materials.get(new.material) != Some(&Some(before));
+        let ranks = old_material.zip(new_material).is_some_and(|(a, b)| a.priority != b.priority);
+        self.ray(differs && ranks, "a solid's priority");
         self.node(differs, before, "a solid's material");
         self.surfaces |= differs;
         let alike = old_material.zip(new_material).is_some_and(|(a, b)| a.leads_rays_like(b));
@@ -453,15 +463,16 @@ impl Material {
             transmit,
             filter,
             ior,
+            priority,
             fresnel: _,
             gloss,
             translucency,
         } = self;
-        let path = (reflect, transmit, filter, ior);
+        let path = (reflect, transmit, filter, ior, priority);
         let lobes = [*gloss, *translucency];
         let hall = |model| model == Model::Hall;
         let goes_on = !reflect.is_black() || !transmit.is_black();
-        path == (&other.reflect, &other.transmit, &other.filter, &other.ior)
+        path == (&other.reflect, &other.transmit, &other.filter, &other.ior, &other.priority)
             && lobes == other.lobes()
             && (!goes_on || bump.bends_like(&other.bump))
             && self.weighs_branches() == other.weighs_branches()

@@ -4,9 +4,11 @@ use std::collections::HashSet;
 
 use glam::DVec3;
 
+use super::csg;
 use super::direction::{TINY, unit};
 use super::fields::{self, Need, Visit};
 use super::light::MOST_LIGHT_RAYS;
+use super::outline;
 use super::slot::Slot;
 use super::toml_text::number;
 use super::value::Names;
@@ -34,7 +36,7 @@ pub struct Flaw {
 }
 
 impl Flaw {
-    fn new(path: &[&str], message: impl Into<String>, help: impl Into<String>) -> Flaw {
+    pub(super) fn new(path: &[&str], message: impl Into<String>, help: impl Into<String>) -> Flaw {
         let path = path.iter().map(|key| (*key).to_owned()).collect();
         Flaw { path, message: message.into(), help: help.into() }
     }
@@ -42,7 +44,7 @@ impl Flaw {
 
 /// Everything wrong with a scene, ranges included; empty for every scene that was read from a file.
 pub fn validate(scene: &Scene) -> Vec<Flaw> {
-    let names = Names::of(&scene.materials);
+    let names = Names::of(scene);
     let mut ranges =
         Ranges { path: Vec::new(), names, count: scene.materials.len(), flaws: Vec::new() };
     fields::scene(&mut scene.clone(), &mut ranges);
@@ -65,6 +67,7 @@ pub fn relations(scene: &Scene) -> Vec<Flaw> {
     flaws.extend(too_many_rays(scene));
     flaws.extend(scene.materials.iter().filter_map(material));
     flaws.extend(scene.solids.iter().filter_map(solid));
+    flaws.extend(csg::flaws(scene));
     flaws
 }
 
@@ -203,7 +206,32 @@ fn shape(shape: &Shape) -> Option<(&'static str, String, String)> {
             polygon(points).map(|(message, help)| ("points", message, help))
         }
         Shape::Knot { turns, tube: _, segments } => knot(*turns, *segments),
-        Shape::Sphere { .. } | Shape::Mesh { .. } | Shape::Sphereflake { .. } => None,
+        Shape::Cylinder { from, to, radius: _ } | Shape::Cone { from, to, radius: _, tip: _ } => {
+            unit(*to - *from).is_none().then(|| {
+                let message = "`to` is where `from` is: the solid has no length";
+                ("to", message.to_owned(), "move one of the two".to_owned())
+            })
+        }
+        Shape::Quadric { squares, products, linear, constant: _, min, max } => {
+            let flat = [squares, products, linear].iter().all(|c| **c == DVec3::ZERO);
+            let message = "all coefficients but `constant` are zero: there is no surface";
+            let help = "for example `squares = [1, 1, -1]`";
+            let none = flat.then(|| ("squares", message.to_owned(), help.to_owned()));
+            none.or_else(|| boxed(*min, *max))
+        }
+        Shape::Prism { outline, bottom, top } => {
+            let (low, high) = (number(*bottom), number(*top));
+            let message = format!("`top` must exceed `bottom`; they are {high} and {low}");
+            let help = "exchange or move them".to_owned();
+            let flat = (bottom >= top).then_some(("top", message, help));
+            flat.or_else(|| outline::flaw(outline).map(|(what, how)| ("outline", what, how)))
+        }
+        Shape::Sphere { .. }
+        | Shape::Torus { .. }
+        | Shape::Ellipsoid { .. }
+        | Shape::Mesh { .. }
+        | Shape::Sphereflake { .. }
+        | Shape::Csg { .. } => None,
     }
 }
 

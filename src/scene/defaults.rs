@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::Placement;
+use super::csg::Operation;
 use super::filter::Filter;
 use super::mesh::Mesh;
 use super::model::Model;
@@ -89,6 +90,7 @@ impl Material {
             transmit: Rgb::BLACK,
             filter: Rgb::WHITE,
             ior: 1.5,
+            priority: 0,
             fresnel: false,
             gloss: 0.0,
             translucency: 0.0,
@@ -169,11 +171,33 @@ impl Background {
 }
 
 impl Shape {
-    /// The shape whose key in the scene file is `key`, of unit size; a sphere for any other word.
+    /// The shape whose key in the scene file is `key`, of unit size, or made of the first solid; a sphere
+    /// for any other word.
     pub fn named(key: &str) -> Shape {
+        if let Some(operation) = Operation::named(key) {
+            return Shape::Csg { operation, operands: vec![0] };
+        }
         match key {
             "plane" => Shape::Plane { normal: DVec3::Z, offset: 0.0 },
             "box" => Shape::Box { min: DVec3::NEG_ONE, max: DVec3::ONE },
+            "cylinder" => Shape::Cylinder { from: DVec3::NEG_Z, to: DVec3::Z, radius: 1.0 },
+            "cone" => Shape::Cone { from: DVec3::NEG_Z, to: DVec3::Z, radius: 1.0, tip: 0.0 },
+            "torus" => Shape::Torus { major: 1.0, minor: 0.3 },
+            "ellipsoid" => {
+                Shape::Ellipsoid { center: DVec3::ZERO, radii: DVec3::new(1.0, 0.8, 0.6) }
+            }
+            "quadric" => Shape::Quadric {
+                squares: DVec3::new(1.0, 1.0, -1.0),
+                products: DVec3::ZERO,
+                linear: DVec3::ZERO,
+                constant: -0.2,
+                min: DVec3::NEG_ONE,
+                max: DVec3::ONE,
+            },
+            "prism" => {
+                let outline = vec![vec![DVec2::ZERO, DVec2::X, DVec2::Y]];
+                Shape::Prism { outline, bottom: 0.0, top: 1.0 }
+            }
             "polygon" => Shape::Polygon { points: vec![DVec3::ZERO, DVec3::X, DVec3::Y] },
             "mesh" => Shape::Mesh { file: "mesh.obj".to_owned(), mesh: Arc::new(Mesh::default()) },
             "knot" => Shape::Knot { turns: [2, 3], tube: 0.3, segments: [400, 100] },

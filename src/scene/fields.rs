@@ -48,7 +48,26 @@ pub const BACKGROUNDS: &[&str] = &["color", "gradient", "image"];
 /// Keys of the functions in a `bump`.
 pub const BUMPS: &[&str] = &["noise", "waves", "image"];
 /// Keys of [`Shape`].
-pub const SHAPES: &[&str] = &["sphere", "plane", "box", "polygon", "mesh", "knot", "sphereflake"];
+pub const SHAPES: &[&str] = &[
+    "sphere",
+    "plane",
+    "box",
+    "cylinder",
+    "cone",
+    "torus",
+    "ellipsoid",
+    "quadric",
+    "prism",
+    "polygon",
+    "mesh",
+    "knot",
+    "sphereflake",
+    "union",
+    "merge",
+    "intersection",
+    "difference",
+    "complement",
+];
 
 /// Whether a key must stand in the scene file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -242,6 +261,7 @@ pub fn material(material: &mut Material, v: &mut dyn Visit) {
         transmit,
         filter,
         ior,
+        priority,
         fresnel,
         gloss,
         translucency,
@@ -260,6 +280,8 @@ pub fn material(material: &mut Material, v: &mut dyn Visit) {
     v.leaf("transmit", Need::Optional, Slot::Coefficient(transmit, WEIGHT));
     v.leaf("filter", Need::Optional, Slot::Coefficient(filter, COEFFICIENT));
     v.leaf("ior", Need::Optional, Slot::Number(ior, Range::closed(0.1, 10.0)));
+    let most = Range::closed(0.0, f64::from(super::MAX_PRIORITY));
+    v.leaf("priority", Need::Optional, Slot::Whole(priority, most));
     v.leaf("fresnel", Need::Optional, Slot::Flag(fresnel));
     v.leaf("gloss", Need::Optional, Slot::Single(gloss, EXPONENT));
     v.leaf("translucency", Need::Optional, Slot::Single(translucency, EXPONENT));
@@ -374,8 +396,12 @@ fn unevenness(bump: &mut Bump, v: &mut dyn Visit) {
 pub fn solid(solid: &mut Solid, v: &mut dyn Visit) {
     let Solid { name: _, shape, material, placement, motion } = solid;
     let key = shape_key(shape);
-    v.group(key, Need::OneOf(SHAPES), &mut |v| self::shape(shape, v));
-    v.leaf("material", Need::Required, Slot::Material(material));
+    if let Shape::Csg { operation: _, operands } = shape {
+        v.leaf(key, Need::OneOf(SHAPES), Slot::Solids(operands));
+    } else {
+        v.group(key, Need::OneOf(SHAPES), &mut |v| self::shape(shape, v));
+        v.leaf("material", Need::Required, Slot::Material(material));
+    }
     self::placement(placement, v);
     v.group("motion", Need::Optional, &mut |v| self::motion(motion, v));
 }
@@ -401,10 +427,17 @@ pub fn shape_key(shape: &Shape) -> &'static str {
         Shape::Sphere { .. } => "sphere",
         Shape::Plane { .. } => "plane",
         Shape::Box { .. } => "box",
+        Shape::Cylinder { .. } => "cylinder",
+        Shape::Cone { .. } => "cone",
+        Shape::Torus { .. } => "torus",
+        Shape::Ellipsoid { .. } => "ellipsoid",
+        Shape::Quadric { .. } => "quadric",
+        Shape::Prism { .. } => "prism",
         Shape::Polygon { .. } => "polygon",
         Shape::Mesh { .. } => "mesh",
         Shape::Knot { .. } => "knot",
         Shape::Sphereflake { .. } => "sphereflake",
+        Shape::Csg { operation, operands: _ } => operation.key(),
     }
 }
 
@@ -424,6 +457,38 @@ pub fn shape(shape: &mut Shape, v: &mut dyn Visit) {
             v.leaf("min", need, Slot::Vector(min, COORDINATE));
             v.leaf("max", need, Slot::Vector(max, COORDINATE));
         }
+        Shape::Cylinder { from, to, radius } => {
+            v.leaf("from", need, Slot::Vector(from, COORDINATE));
+            v.leaf("to", need, Slot::Vector(to, COORDINATE));
+            v.leaf("radius", need, Slot::Number(radius, LENGTH));
+        }
+        Shape::Cone { from, to, radius, tip } => {
+            v.leaf("from", need, Slot::Vector(from, COORDINATE));
+            v.leaf("to", need, Slot::Vector(to, COORDINATE));
+            v.leaf("radius", need, Slot::Number(radius, LENGTH));
+            v.leaf("tip", Need::Optional, Slot::Number(tip, DISTANCE));
+        }
+        Shape::Torus { major, minor } => {
+            v.leaf("major", need, Slot::Number(major, LENGTH));
+            v.leaf("minor", need, Slot::Number(minor, LENGTH));
+        }
+        Shape::Ellipsoid { center, radii } => {
+            v.leaf("center", need, Slot::Vector(center, COORDINATE));
+            v.leaf("radii", need, Slot::Vector(radii, LENGTH));
+        }
+        Shape::Quadric { squares, products, linear, constant, min, max } => {
+            v.leaf("squares", need, Slot::Vector(squares, COORDINATE));
+            v.leaf("products", Need::Optional, Slot::Vector(products, COORDINATE));
+            v.leaf("linear", Need::Optional, Slot::Vector(linear, COORDINATE));
+            v.leaf("constant", need, Slot::Number(constant, COORDINATE));
+            v.leaf("min", need, Slot::Vector(min, COORDINATE));
+            v.leaf("max", need, Slot::Vector(max, COORDINATE));
+        }
+        Shape::Prism { outline, bottom, top } => {
+            v.leaf("outline", need, Slot::Loops(outline, COORDINATE));
+            v.leaf("bottom", need, Slot::Number(bottom, COORDINATE));
+            v.leaf("top", need, Slot::Number(top, COORDINATE));
+        }
         Shape::Polygon { points } => v.leaf("points", need, Slot::Points(points, COORDINATE)),
         Shape::Mesh { file, mesh } => v.leaf("file", need, Slot::Mesh { file, mesh }),
         Shape::Knot { turns, tube, segments } => {
@@ -436,6 +501,8 @@ pub fn shape(shape: &mut Shape, v: &mut dyn Visit) {
             v.leaf("radius", need, Slot::Number(radius, LENGTH));
             v.leaf("levels", need, Slot::Whole(levels, Range::closed(1.0, 6.0)));
         }
+        // Its key holds the operands themselves.
+        Shape::Csg { operation: _, operands: _ } => {}
     }
 }
 

@@ -1,7 +1,10 @@
 //! Which indices of refraction can show: what surrounds the eye, and what light passes through.
 
-use glam::{DMat3, DVec3};
+use std::cell::Cell;
 
+use glam::{DMat3, DVec2, DVec3};
+
+use super::csg::{MOST_DEEP, MOST_PARTS, Operation};
 use super::model::Model;
 use super::{Lens, Material, Placement, Scene, Shape, Solid};
 
@@ -32,15 +35,51 @@ impl Scene {
 
     /// Materials of the solids that may contain the eye, or for a parallel view, any ray's origin.
     fn around_the_eye(&self) -> Vec<usize> {
-        let known = self.solids.iter().filter(|solid| solid.material < self.materials.len());
+        self.around(true)
+    }
+
+    /// Those of them that let light through, ascending; a mesh contains what its box contains. Rays
+    /// from the eye begin in them.
+    pub fn clear_around_the_eye(&self) -> Vec<usize> {
+        let mut around = self.around(false);
+        around.retain(|&material| !self.materials[material].transmit.is_black());
+        around.sort_unstable();
+        around.dedup();
+        around
+    }
+
+    /// Materials of the solids that may contain the eye; `anywhere` if a mesh always may.
+    fn around(&self, anywhere: bool) -> Vec<usize> {
         let [width, pixels] = self.picture.size.map(f64::from);
         let reach = match self.camera.lens {
             Lens::Perspective { fov_degrees: _ } => self.camera.opening().map_or(0.0, |o| o.radius),
             // Parallel rays begin on a rectangle around the eye.
             Lens::Parallel { height } => height / 2.0 * (width / pixels).hypot(1.0),
         };
-        let around = known.filter(|solid| solid.may_contain(self.camera.eye, reach));
-        around.map(|solid| solid.material).collect()
+        let question = Question { scene: self, anywhere, asked: Cell::new(0) };
+        let mut known = Vec::new();
+        for (solid, operand) in self.solids.iter().zip(self.is_operand()) {
+            if !operand && question.may_contain(solid, self.camera.eye, (reach, 0)) {
+                self.materials_of(solid, &mut known);
+            }
+        }
+        known.retain(|material| *material < self.materials.len());
+        known
+    }
+
+    /// Appends the material of a solid, or of all that it is made of.
+    fn materials_of(&self, solid: &Solid, known: &mut Vec<usize>) {
+        let (mut open, mut seen) = (vec![solid], vec![false; self.solids.len()]);
+        while let Some(solid) = open.pop() {
+            if !solid.shape.is_composite() {
+                known.push(solid.material);
+            }
+            for &operand in solid.shape.operands() {
+                if seen.get_mut(operand).is_some_and(|seen| !std::mem::replace(seen, true)) {
+                    open.push(&self.solids[operand]);
+                }
+            }
+        }
     }
 }
 
@@ -51,15 +90,27 @@ impl Material {
     }
 }
 
-impl Solid {
-    /// Whether a point, or one at most `reach` from it, may lie in the solid: `false` only if none
+/// What is asked about a point.
+struct Question<'a> {
+    scene: &'a Scene,
+    /// Whether every mesh may contain every point.
+    anywhere: bool,
+    /// How many solids were asked: no scene that was checked has so many, or so deep, that the answer
+    /// is given up.
+    asked: Cell<u64>,
+}
+
+impl Question<'_> {
+    /// Whether a point, or one at most `reach` from it, may lie in a solid: `false` only if none
     /// does.
-    fn may_contain(&self, point: DVec3, reach: f64) -> bool {
-        if self.moves() {
+    fn may_contain(&self, solid: &Solid, point: DVec3, (reach, depth): (f64, u64)) -> bool {
+        self.asked.set(self.asked.get() + 1);
+        let given_up = self.asked.get() > 2 * MOST_PARTS || depth > MOST_DEEP;
+        if solid.moves() || given_up {
             // It may come by.
             return true;
         }
-        let Placement { translate, rotate_degrees, scale } = self.placement;
+        let Placement { translate, rotate_degrees, scale } = solid.placement;
         let [x, y, z] = rotate_degrees.to_array().map(f64::to_radians);
         let turned =
             DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
@@ -68,19 +119,56 @@ impl Solid {
         let within = |center: DVec3, radius: f64| {
             (p - center).length() <= radius * (1.0 + MARGIN) + center.length() * MARGIN + reach
         };
-        match &self.shape {
+        let around = |min: DVec3, max: DVec3| {
+            let margin = DVec3::splat((min.abs() + max.abs()).max_element() * MARGIN + reach);
+            p.cmpge(min - margin).all() && p.cmple(max + margin).all()
+        };
+        let rod = |from: DVec3, to: DVec3, radius: f64| {
+            let half = (to - from) * 0.5;
+            within(from + half, half.length() + radius)
+        };
+        match &solid.shape {
             Shape::Sphere { center, radius } => within(*center, *radius),
             Shape::Plane { normal, offset } => {
                 let size = p.length() + offset.abs();
                 normal.normalize_or_zero().dot(p) <= offset + size * MARGIN + reach
             }
-            Shape::Box { min, max } => {
-                let margin = DVec3::splat((min.abs() + max.abs()).max_element() * MARGIN + reach);
-                p.cmpge(*min - margin).all() && p.cmple(*max + margin).all()
+            Shape::Box { min, max } => around(*min, *max),
+            Shape::Cylinder { from, to, radius } => rod(*from, *to, *radius),
+            Shape::Cone { from, to, radius, tip } => rod(*from, *to, radius.max(*tip)),
+            Shape::Torus { major, minor } => within(DVec3::ZERO, major + minor),
+            Shape::Ellipsoid { center, radii } => around(*center - *radii, *center + *radii),
+            Shape::Quadric { squares: _, products: _, linear: _, constant: _, min, max } => {
+                around(*min, *max)
+            }
+            Shape::Prism { outline, bottom, top } => {
+                let corners = || outline.iter().flatten();
+                let min = corners().fold(DVec2::INFINITY, |a, b| a.min(*b));
+                let max = corners().fold(DVec2::NEG_INFINITY, |a, b| a.max(*b));
+                around(min.extend(*bottom), max.extend(*top))
             }
             Shape::Polygon { points: _ } => false,
+            Shape::Csg { operation, operands } => {
+                let known = operands.iter().filter_map(|&operand| self.scene.solids.get(operand));
+                let mut of = known.map(|operand| self.may_contain(operand, p, (reach, depth + 1)));
+                match operation {
+                    Operation::Union | Operation::Merge => of.any(|contains| contains),
+                    Operation::Intersection => of.all(|contains| contains),
+                    Operation::Difference => of.next().unwrap_or(false),
+                    // A point that may be in an operand may as well be outside.
+                    Operation::Complement => true,
+                }
+            }
             // A part of it may be turned inside out: seen from outside it is like an inside.
-            Shape::Mesh { file: _, mesh: _ } => true,
+            Shape::Mesh { file: _, mesh } => {
+                self.anywhere || {
+                    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+                    let around = |(lo, hi): (DVec3, DVec3), q: &DVec3| (lo.min(*q), hi.max(*q));
+                    let (lo, hi) = mesh.positions.iter().fold(none, around);
+                    let margin = DVec3::splat((lo.abs() + hi.abs()).max_element() * MARGIN + reach);
+                    p.cmpge(lo - margin).all() && p.cmple(hi + margin).all()
+                }
+            }
             // The knot lies within a torus of radius 1 ½ and its own tube.
             Shape::Knot { turns: _, tube, segments: _ } => within(DVec3::ZERO, 2.0 + tube),
             // Radii 1, 1/3, 1/9 … one upon the other.
@@ -144,14 +232,49 @@ mod tests {
             },
             motion: Motion::default(),
         };
+        let scene = Scene::default();
+        let may_contain = |solid: &Solid, point, reach| {
+            let question = Question { scene: &scene, anywhere: true, asked: Cell::new(0) };
+            question.may_contain(solid, point, (reach, 0))
+        };
         let cube = solid(Shape::Box { min: DVec3::ZERO, max: DVec3::ONE });
         // x of the box, twice as long, points along y of the world, its y along −x.
-        assert!(cube.may_contain(DVec3::new(0.5, 1.9, 0.5), 0.0));
-        assert!(!cube.may_contain(DVec3::new(0.5, 2.1, 0.5), 0.0));
-        assert!(cube.may_contain(DVec3::new(0.5, 2.1, 0.5), 0.2));
-        assert!(!cube.may_contain(DVec3::new(1.1, 1.0, 0.5), 0.0));
+        assert!(may_contain(&cube, DVec3::new(0.5, 1.9, 0.5), 0.0));
+        assert!(!may_contain(&cube, DVec3::new(0.5, 2.1, 0.5), 0.0));
+        assert!(may_contain(&cube, DVec3::new(0.5, 2.1, 0.5), 0.2));
+        assert!(!may_contain(&cube, DVec3::new(1.1, 1.0, 0.5), 0.0));
         let floor = solid(Shape::Plane { normal: DVec3::Z, offset: 0.0 });
-        assert!(floor.may_contain(DVec3::new(9.0, 9.0, -0.1), 0.0));
-        assert!(!floor.may_contain(DVec3::new(9.0, 9.0, 0.1), 0.0));
+        assert!(may_contain(&floor, DVec3::new(9.0, 9.0, -0.1), 0.0));
+        assert!(!may_contain(&floor, DVec3::new(9.0, 9.0, 0.1), 0.0));
+    }
+
+    #[test]
+    fn what_is_made_of_others_contains_what_they_contain() {
+        let mut scene = scene([1.5, 1.6], [0.5, 0.5]);
+        let csg = |operation, operands: &[usize]| {
+            let shape = Shape::Csg { operation, operands: operands.to_vec() };
+            Solid::new("made", shape, 0)
+        };
+        let around = |scene: &Scene, solids: &[Solid]| {
+            let mut scene = scene.clone();
+            scene.solids.extend_from_slice(solids);
+            scene.clear_around_the_eye()
+        };
+        assert_eq!(around(&scene, &[]), [0usize; 0]);
+        // One ball is about the eye, the other 3 beside it.
+        scene.camera.eye = DVec3::ZERO;
+        assert_eq!(around(&scene, &[]), [0]);
+        assert_eq!(around(&scene, &[csg(Operation::Union, &[0, 1])]), [0, 1]);
+        assert_eq!(around(&scene, &[csg(Operation::Intersection, &[0, 1])]), [0usize; 0]);
+        assert_eq!(around(&scene, &[csg(Operation::Difference, &[1, 0])]), [0usize; 0]);
+        assert_eq!(around(&scene, &[csg(Operation::Complement, &[1])]), [0, 1]);
+        let mut away = csg(Operation::Merge, &[0]);
+        away.placement.translate.y = 9.0;
+        assert_eq!(around(&scene, &[away]), [0usize; 0]);
+        scene.materials[0].transmit = Rgb::BLACK;
+        assert_eq!(around(&scene, &[csg(Operation::Union, &[0, 1])]), [1]);
+        // What was never checked ends too.
+        let knotted = [csg(Operation::Merge, &[2, 2]), csg(Operation::Merge, &[2])];
+        assert_eq!(around(&scene, &knotted), [1]);
     }
 }

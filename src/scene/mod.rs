@@ -6,6 +6,7 @@
 
 pub mod change;
 pub mod check;
+pub mod csg;
 mod defaults;
 mod direction;
 pub mod energy;
@@ -18,6 +19,7 @@ pub mod mesh;
 pub mod model;
 pub mod motion;
 mod obj;
+mod outline;
 mod paint;
 pub mod path;
 pub mod problem;
@@ -25,6 +27,7 @@ pub mod range;
 pub mod read;
 mod reader;
 pub mod refine;
+pub mod seams;
 pub mod slot;
 pub mod texture;
 pub(crate) mod toml_text;
@@ -33,9 +36,10 @@ pub mod write;
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::color::Rgb;
+use csg::Operation;
 use filter::Filter;
 pub use light::{Area, Light, LightPlace};
 use mesh::Mesh;
@@ -125,6 +129,8 @@ pub struct Picture {
 pub const MAX_SIDE: u32 = 65_536;
 /// Largest number of pixels of a picture.
 pub const MAX_PIXELS: u64 = 1 << 28;
+/// Highest priority of a material.
+pub const MAX_PRIORITY: u32 = 1000;
 /// Largest number of materials, and of lights.
 pub const MAX_NAMED: usize = 65_535;
 /// Largest number of quadrangles of a knot: segments along times segments around.
@@ -229,6 +235,9 @@ pub struct Material {
     pub filter: Rgb,
     /// Index of refraction.
     pub ior: f64,
+    /// Which solid is there where several overlap: that of the highest priority; of equals, for what is
+    /// refracted, the one entered last. 0 … [`MAX_PRIORITY`].
+    pub priority: u32,
     /// Whether `reflect` and `transmit` are weighted by Fresnel's reflectance F and 1 − F, as in
     /// Hall's model they always are.
     pub fresnel: bool,
@@ -246,7 +255,8 @@ pub struct Solid {
     pub name: String,
     /// The form, in object space.
     pub shape: Shape,
-    /// Index into `Scene::materials`.
+    /// Index into `Scene::materials`; of no meaning where the solid is made of others, whose surfaces
+    /// keep their own.
     pub material: usize,
     /// world_from_object.
     pub placement: Placement,
@@ -296,6 +306,65 @@ pub enum Shape {
         /// Highest corner.
         max: DVec3,
     },
+    /// A round rod with flat ends.
+    Cylinder {
+        /// Middle of one end.
+        from: DVec3,
+        /// Middle of the other end; differs from `from`.
+        to: DVec3,
+        /// > 0.
+        radius: f64,
+    },
+    /// A cone, whose tip may be cut off: its radius changes evenly from one end to the other.
+    Cone {
+        /// Middle of one end.
+        from: DVec3,
+        /// Middle of the other end; differs from `from`.
+        to: DVec3,
+        /// Radius at `from`, > 0.
+        radius: f64,
+        /// Radius at `to`, ≥ 0; 0 is a point.
+        tip: f64,
+    },
+    /// A tube around a circle around the z axis. If `minor` exceeds `major` it has no hole.
+    Torus {
+        /// Radius of the circle, > 0.
+        major: f64,
+        /// Radius of the tube, > 0.
+        minor: f64,
+    },
+    /// A sphere with a radius of its own along each axis.
+    Ellipsoid {
+        /// Centre.
+        center: DVec3,
+        /// Each > 0.
+        radii: DVec3,
+    },
+    /// All points of a box where a function of the second degree is not above zero.
+    Quadric {
+        /// Coefficients of x², y², z².
+        squares: DVec3,
+        /// Coefficients of yz, zx, xy.
+        products: DVec3,
+        /// Coefficients of x, y, z.
+        linear: DVec3,
+        /// What the function is at the origin.
+        constant: f64,
+        /// Lowest corner of the box.
+        min: DVec3,
+        /// Highest corner of the box; `min < max` on every axis.
+        max: DVec3,
+    },
+    /// A flat outline in x and y, swept from one height to another.
+    Prism {
+        /// Loops of three or more points, which do not cross: the first one and its holes. A point is
+        /// inside if an odd number of loops is around it.
+        outline: Vec<Vec<DVec2>>,
+        /// Lower z.
+        bottom: f64,
+        /// Upper z, > `bottom`.
+        top: f64,
+    },
     /// A flat polygon of three or more points: a surface without thickness, which does not refract.
     Polygon {
         /// Corners in order, possibly concave.
@@ -316,6 +385,14 @@ pub enum Shape {
         tube: f64,
         /// Segments along and around the tube, each 3 … 65 536, at most [`MAX_KNOT_FACES`] together.
         segments: [u32; 2],
+    },
+    /// What an operation makes of other solids, which are then not seen by themselves. The operands'
+    /// world is this solid's object space: its placement and motion come on top of theirs.
+    Csg {
+        /// Which one.
+        operation: Operation,
+        /// Indices into `Scene::solids`, one or more; none of them is, in the end, made of this solid.
+        operands: Vec<usize>,
     },
     /// A sphere carrying nine spheres of a third of its radius, recursively: (9^levels − 1)/8 spheres.
     Sphereflake {

@@ -48,7 +48,7 @@ impl std::error::Error for PathError {}
 
 /// Every parameter that can be set, in the order of the scene file.
 pub fn parameters(scene: &Scene) -> Vec<Parameter> {
-    let names = Names::of(&scene.materials);
+    let names = Names::of(scene);
     let mut list = Vec::new();
     walk(&mut scene.clone(), &mut |path, _, slot| {
         if slot.kind() != Kind::File {
@@ -64,7 +64,7 @@ pub fn parameters(scene: &Scene) -> Vec<Parameter> {
 /// After an error the scene is what it was; after success it is as valid as it was before.
 pub fn set(scene: &mut Scene, path: &str, value: &str) -> Result<(), PathError> {
     let error = |message: String, help: String| PathError { path: path.to_owned(), message, help };
-    let names = Names::of(&scene.materials);
+    let names = Names::of(scene);
     let wanted = canonical(path);
     let mut edited = scene.clone();
     let mut outcome = None;
@@ -294,7 +294,7 @@ mod tests {
         for path in parameters(&original).iter().map(|p| p.path.as_str()) {
             let altered = altered(&original, path).unwrap();
             assert_ne!(altered, original, "{path}");
-            let names = Names::of(&altered.materials);
+            let names = Names::of(&altered);
             let mut twice = altered.clone();
             walk(&mut twice, &mut |at, key, mut slot| {
                 if at == path {

@@ -100,8 +100,12 @@ pub enum Kind {
     Scale,
     /// `[[x, y, z], …]`.
     Points,
+    /// `[[x, y], …]`, or a list of those.
+    Loops,
     /// The name of a material.
     Material,
+    /// `["a", "b", …]`, names of solids.
+    Solids,
     /// The name of a mesh or image file.
     File,
 }
@@ -119,7 +123,9 @@ impl Kind {
             Kind::Vector => "three numbers [x, y, z]",
             Kind::Scale => "a number or [x, y, z]",
             Kind::Points => "a list of points [[x, y, z], …]",
+            Kind::Loops => "a list of points [[x, y], …], or a list of such lists",
             Kind::Material => "the name of a material",
+            Kind::Solids => "a list of names of solids [\"a\", \"b\", …]",
             Kind::File => "the name of a file",
         }
     }

@@ -398,7 +398,9 @@ mod tests {
         for (lines, expected) in [
             (
                 "",
-                "`solids.a` needs one of `sphere`, `plane`, `box`, `polygon`, `mesh`, `knot`, `sphereflake`",
+                "`solids.a` needs one of `sphere`, `plane`, `box`, `cylinder`, `cone`, `torus`, `ellipsoid`, \
+                 `quadric`, `prism`, `polygon`, `mesh`, `knot`, `sphereflake`, `union`, `merge`, \
+                 `intersection`, `difference`, `complement`",
             ),
             ("sphere = 3", "`sphere` must be a table, found the whole number 3"),
             ("sphere = { center = [0, 0, 0] }", "`solids.a.sphere` needs the key `radius`"),
@@ -453,6 +455,25 @@ mod tests {
         let found = refused(&format!("{ball}material = \"glas\"\n[materials.glass]"));
         assert!(found.contains("s.toml:4:12: there is no material `glas`\n"), "{found}");
         assert!(found.ends_with("help: did you mean `glass`?"), "{found}");
+    }
+
+    #[test]
+    fn every_kind_of_mistake_of_what_is_made_of_others_has_its_message() {
+        for (lines, expected) in [
+            (
+                "union = \"a\"",
+                "`union` must be a list of names of solids [\"a\", \"b\", …], found a string",
+            ),
+            ("merge = [\"a\", \"b\"]", "there is no solid `b`"),
+            ("difference = [\"a\"]", "a solid cannot be made of itself: `a` of `a`"),
+            ("complement = []", "it has no operands"),
+            ("merge = [\"ball\"]\nmaterial = \"m\"", "unknown key `material` in `solids.a`"),
+        ] {
+            let ball =
+                "[solids.ball]\nsphere = { center = [0, 0, 0], radius = 1 }\nmaterial = \"m\"";
+            let lines = format!("[materials.m]\n{ball}\n[solids.a]\n{lines}");
+            assert_eq!(messages(&lines), [expected], "{lines}");
+        }
     }
 
     #[test]

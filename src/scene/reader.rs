@@ -32,7 +32,7 @@ pub(super) fn fill<'a>(
 ) -> Vec<Mistake> {
     let mut reader = Reader {
         scopes: vec![Scope { key: None, span: 0..0, table: Some(root), known: Vec::new() }],
-        names: Names::of(&scene.materials),
+        names: Names::of(scene),
         folder,
         files: known,
         mistakes: Vec::new(),

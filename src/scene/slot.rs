@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use toml::Spanned;
 use toml::de::DeValue;
 
@@ -48,8 +48,12 @@ pub enum Slot<'a> {
     Scale(&'a mut DVec3, Range),
     /// A list of points.
     Points(&'a mut Vec<DVec3>, Range),
+    /// Loops of points in a plane; one loop is written as a list of points, several as a list of those.
+    Loops(&'a mut Vec<Vec<DVec2>>, Range),
     /// Index of a material, written as its name.
     Material(&'a mut usize),
+    /// Indices of solids, written as their names.
+    Solids(&'a mut Vec<usize>),
     /// A mesh file and what it held when it was read.
     Mesh {
         /// As written in the scene.
@@ -74,7 +78,9 @@ impl Slot<'_> {
             Slot::Vector(..) => Kind::Vector,
             Slot::Scale(..) => Kind::Scale,
             Slot::Points(..) => Kind::Points,
+            Slot::Loops(..) => Kind::Loops,
             Slot::Material(_) => Kind::Material,
+            Slot::Solids(_) => Kind::Solids,
             Slot::Mesh { .. } | Slot::Image(_) => Kind::File,
         }
     }
@@ -89,8 +95,9 @@ impl Slot<'_> {
             | Slot::Pair(_, range)
             | Slot::Vector(_, range)
             | Slot::Scale(_, range)
-            | Slot::Points(_, range) => Some(*range),
-            Slot::Flag(_) | Slot::Choice(_) | Slot::Material(_) => None,
+            | Slot::Points(_, range)
+            | Slot::Loops(_, range) => Some(*range),
+            Slot::Flag(_) | Slot::Choice(_) | Slot::Material(_) | Slot::Solids(_) => None,
             Slot::Mesh { .. } | Slot::Image(_) => None,
         }
     }
@@ -112,8 +119,17 @@ impl Slot<'_> {
             Slot::Points(points, _) => {
                 format!("[{}]", points.iter().map(vector).collect::<Vec<_>>().join(", "))
             }
-            Slot::Material(index) => {
-                quoted(names.list.get(**index).map_or("NAME", |name| name.as_str()))
+            Slot::Loops(loops, _) => match loops.as_slice() {
+                [points] => plane_points(points),
+                loops => {
+                    let loops: Vec<String> = loops.iter().map(|l| plane_points(l)).collect();
+                    format!("[{}]", loops.join(", "))
+                }
+            },
+            Slot::Material(index) => quoted(names.materials.name(**index)),
+            Slot::Solids(operands) => {
+                let name = |index: &usize| quoted(names.solids.name(*index));
+                format!("[{}]", operands.iter().map(name).collect::<Vec<_>>().join(", "))
             }
             Slot::Mesh { file, .. } => quoted(file),
             Slot::Image(ImageFile { file, image: _ }) => quoted(file),
@@ -142,7 +158,9 @@ impl Slot<'_> {
             Slot::Vector(v, _) => **v = DVec3::from(target.three(value)?),
             Slot::Scale(v, _) => **v = DVec3::from(target.one_or_three(value)?),
             Slot::Points(points, _) => **points = target.points(value)?,
-            Slot::Material(index) => **index = target.material(value, names)?,
+            Slot::Loops(loops, _) => **loops = target.loops(value)?,
+            Slot::Material(index) => **index = target.material(value, &names.materials)?,
+            Slot::Solids(operands) => **operands = target.solids(value, &names.solids)?,
             Slot::Mesh { .. } | Slot::Image(_) => return Err(target.fixed(value)),
         }
         match self.first_outside() {
@@ -170,7 +188,13 @@ impl Slot<'_> {
                     point.x = another(point.x, *range, |x| x);
                 }
             }
+            Slot::Loops(loops, range) => {
+                for point in loops.iter_mut().flatten() {
+                    point.x = another(point.x, *range, |x| x);
+                }
+            }
             Slot::Material(index) => **index += 1,
+            Slot::Solids(operands) => operands.push(0),
             Slot::Mesh { .. } | Slot::Image(_) => {}
         }
     }
@@ -201,7 +225,12 @@ impl Slot<'_> {
             Slot::Points(points, _) => {
                 points.iter().flat_map(DVec3::to_array).enumerate().find(bad)
             }
-            Slot::Flag(_) | Slot::Choice(_) | Slot::Material(_) => None,
+            // The place of a number among loops is not looked for.
+            Slot::Loops(loops, _) => {
+                let all = loops.iter().flatten().flat_map(DVec2::to_array);
+                all.map(|x| (usize::MAX, x)).find(bad)
+            }
+            Slot::Flag(_) | Slot::Choice(_) | Slot::Material(_) | Slot::Solids(_) => None,
             Slot::Mesh { .. } | Slot::Image(_) => None,
         }
     }
@@ -213,6 +242,12 @@ impl Slot<'_> {
             _ => number(x),
         }
     }
+}
+
+/// `[[x, y], …]`.
+fn plane_points(points: &[DVec2]) -> String {
+    let point = |p: &DVec2| format!("[{}, {}]", number(p.x), number(p.y));
+    format!("[{}]", points.iter().map(point).collect::<Vec<_>>().join(", "))
 }
 
 /// The middle of a range, or, in its place, the middle of the range's lower half.

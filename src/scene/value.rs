@@ -3,33 +3,67 @@
 use std::collections::HashMap;
 use std::str::FromStr;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::Material;
+use super::Scene;
 use super::problem::{Mistake, suggestion};
 use super::range::{Kind, Range};
 use super::toml_text::{bare_or_quoted, number};
 
-/// The names of a scene's materials, for writing and finding an index.
+/// The names of what a scene's parameters refer to, for writing and finding an index.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
-    pub(super) list: Vec<String>,
-    pub(super) index: HashMap<String, usize>,
+    pub(super) materials: NameList,
+    pub(super) solids: NameList,
 }
 
 impl Names {
-    /// Names in the order of the list.
-    pub fn of(materials: &[Material]) -> Names {
-        let list: Vec<String> = materials.iter().map(|material| material.name.clone()).collect();
-        let index = list.iter().cloned().enumerate().map(|(i, name)| (name, i)).collect();
-        Names { list, index }
+    /// Those of a scene.
+    pub fn of(scene: &Scene) -> Names {
+        Names {
+            materials: NameList::of(scene.materials.iter().map(|material| &material.name)),
+            solids: NameList::of(scene.solids.iter().map(|solid| &solid.name)),
+        }
     }
 
-    /// The names in the order of their indices.
-    pub fn list(&self) -> &[String] {
-        &self.list
+    /// The materials' names in the order of their indices.
+    pub fn materials(&self) -> &[String] {
+        &self.materials.list
+    }
+}
+
+/// The names of one of a scene's lists.
+#[derive(Clone, Debug, Default)]
+pub(super) struct NameList {
+    list: Vec<String>,
+    index: HashMap<String, usize>,
+}
+
+impl NameList {
+    fn of<'a>(names: impl Iterator<Item = &'a String>) -> NameList {
+        let list: Vec<String> = names.cloned().collect();
+        let index = list.iter().cloned().enumerate().map(|(i, name)| (name, i)).collect();
+        NameList { list, index }
+    }
+
+    /// The name with this index.
+    pub(super) fn name(&self, index: usize) -> &str {
+        self.list.get(index).map_or("NAME", |name| name.as_str())
+    }
+
+    /// The index of a name, or what is wrong: there is no such `kind` in the scene.
+    fn find(&self, value: &Spanned<DeValue<'_>>, name: &str, kind: &str) -> Result<usize, Mistake> {
+        self.index.get(name).copied().ok_or_else(|| Mistake {
+            span: value.span(),
+            message: format!("there is no {kind} `{name}`"),
+            help: if self.list.is_empty() {
+                format!("add a table `[{kind}s.{}]`", bare_or_quoted(name))
+            } else {
+                suggestion(name, &format!("{kind}s"), self.list.iter().map(String::as_str))
+            },
+        })
     }
 }
 
@@ -129,6 +163,27 @@ impl Target<'_> {
         list.iter().map(|point| Ok(DVec3::from(self.three(point)?))).collect()
     }
 
+    /// One loop of points, or a list of loops.
+    pub(super) fn loops(&self, value: &Spanned<DeValue<'_>>) -> Result<Vec<Vec<DVec2>>, Mistake> {
+        let list = value.get_ref().as_array().ok_or_else(|| self.wrong_type(value))?;
+        let inner = |value: &Spanned<DeValue<'_>>| {
+            value.get_ref().as_array().and_then(|a| a.first()).map(|v| v.get_ref().is_array())
+        };
+        let points = |value: &Spanned<DeValue<'_>>| {
+            let list = value.get_ref().as_array().ok_or_else(|| self.wrong_type(value))?;
+            let point = |value| {
+                let [x, y] = self.array(value)?;
+                Ok(DVec2::new(self.float(x)?, self.float(y)?))
+            };
+            list.iter().map(point).collect()
+        };
+        if list.first().and_then(inner).unwrap_or(false) {
+            list.iter().map(points).collect()
+        } else {
+            Ok(vec![points(value)?])
+        }
+    }
+
     pub(super) fn whole(&self, value: &Spanned<DeValue<'_>>) -> Result<u32, Mistake> {
         let DeValue::Integer(text) = value.get_ref() else {
             return Err(self.wrong_type(value));
@@ -160,18 +215,23 @@ impl Target<'_> {
     pub(super) fn material(
         &self,
         value: &Spanned<DeValue<'_>>,
-        names: &Names,
+        names: &NameList,
     ) -> Result<usize, Mistake> {
         let name = value.get_ref().as_str().ok_or_else(|| self.wrong_type(value))?;
-        names.index.get(name).copied().ok_or_else(|| Mistake {
-            span: value.span(),
-            message: format!("there is no material `{name}`"),
-            help: if names.list.is_empty() {
-                format!("add a table `[materials.{}]`", bare_or_quoted(name))
-            } else {
-                suggestion(name, "materials", names.list.iter().map(String::as_str))
-            },
-        })
+        names.find(value, name, "material")
+    }
+
+    pub(super) fn solids(
+        &self,
+        value: &Spanned<DeValue<'_>>,
+        names: &NameList,
+    ) -> Result<Vec<usize>, Mistake> {
+        let list = value.get_ref().as_array().ok_or_else(|| self.wrong_type(value))?;
+        let solid = |value: &Spanned<DeValue<'_>>| {
+            let name = value.get_ref().as_str().ok_or_else(|| self.wrong_type(value))?;
+            names.find(value, name, "solid")
+        };
+        list.iter().map(solid).collect()
     }
 }
 

@@ -13,7 +13,7 @@ use super::{Light, Material, Scene, Shape, Solid};
 /// `read::text` gives back the same scene bit for bit, if it can find the same mesh files.
 pub fn text(scene: &Scene) -> String {
     let nodes = tree(scene);
-    let defaults = Defaults::new(&Names::of(&scene.materials));
+    let defaults = Defaults::new(&Names::of(scene));
     let mut out = "version = 1\n".to_owned();
     for node in &nodes {
         if let Content::Value(value) = &node.content
@@ -43,7 +43,7 @@ pub fn inline(names: &Names, body: &mut dyn FnMut(&mut dyn Visit)) -> String {
 /// Every value and table of a scene. Two scenes with equal trees are the same to the last bit, but for
 /// what their mesh files held.
 pub(crate) fn tree(scene: &Scene) -> Vec<Node> {
-    let names = Names::of(&scene.materials);
+    let names = Names::of(scene);
     nodes(&names, &mut |v| fields::scene(&mut scene.clone(), v))
 }
 
@@ -210,7 +210,9 @@ mod tests {
         scene.materials[2].reflect = Rgb::grey(f32::from_bits(0x3dcc_cccc));
         scene.materials[2].metallic = 0.5;
         for (index, key) in fields::SHAPES.iter().enumerate().filter(|(_, key)| **key != "mesh") {
-            let mut solid = Solid::new(format!("solid {key}"), Shape::named(key), index % 3);
+            let shape = Shape::named(key);
+            let material = if shape.is_composite() { 0 } else { index % 3 };
+            let mut solid = Solid::new(format!("solid {key}"), shape, material);
             solid.placement.translate.x = index as f64 * 0.1;
             if *key != "plane" {
                 solid.motion.rotate_degrees.y = index as f64 * 7.7;

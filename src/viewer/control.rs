@@ -5,7 +5,7 @@ use eframe::egui::{
     Button, Checkbox, Color32, ComboBox, DragValue, Label, Layout, Rect, Response, RichText, Sense,
     Slider, SliderClamping, Ui, UiBuilder, pos2, vec2,
 };
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::badge::badge_ui;
 use super::hints;
@@ -54,6 +54,10 @@ pub(super) fn control_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> Row
     let mut outcome = RowOutcome::default();
     if let Slot::Points(points, _) = slot {
         points_ui(ui, row, points, &mut outcome);
+        return outcome;
+    }
+    if let Slot::Loops(loops, range) = slot {
+        loops_ui(ui, row, loops, *range, &mut outcome);
         return outcome;
     }
     let (name, value, badge) = columns(ui);
@@ -145,7 +149,14 @@ fn value_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> bool {
             explained(label, row, None);
             false
         }
-        Slot::Points(..) | Slot::Image(_) => false,
+        // Which solids one is made of is said in the scene file.
+        Slot::Solids(_) => {
+            let text = slot.text(row.names);
+            let label = ui.add(Label::new(text.as_str()).truncate());
+            explained(label.on_hover_text(text), row, None);
+            false
+        }
+        Slot::Points(..) | Slot::Loops(..) | Slot::Image(_) => false,
     }
 }
 
@@ -355,7 +366,7 @@ fn choice_ui(ui: &mut Ui, row: &Row<'_>, choice: &mut dyn Choice) -> bool {
 
 fn material_ui(ui: &mut Ui, row: &Row<'_>, index: &mut usize) -> bool {
     let before = *index;
-    let names = row.names.list();
+    let names = row.names.materials();
     let name = |i: usize| names.get(i).map_or("?", String::as_str);
     let combo = ComboBox::from_id_salt(row.path).selected_text(name(before));
     let response = combo.width(ui.available_width()).show_ui(ui, |ui| {
@@ -386,6 +397,33 @@ fn points_ui(ui: &mut Ui, row: &Row<'_>, points: &mut [DVec3], outcome: &mut Row
                 outcome.changed |=
                     vector_ui(ui, row, &name, point, crate::scene::fields::COORDINATE);
             });
+        }
+    });
+    explained(header.header_response, row, None);
+}
+
+/// The corners of an outline's loops, one row each.
+fn loops_ui(
+    ui: &mut Ui,
+    row: &Row<'_>,
+    loops: &mut [Vec<DVec2>],
+    range: Range,
+    outcome: &mut RowOutcome,
+) {
+    let title = format!("{} ({})", row.key, loops.iter().map(Vec::len).sum::<usize>());
+    let header = CollapsingHeader::new(title).id_salt(row.path);
+    let header = header.show(ui, |ui| {
+        badge_ui(ui, row.key, row.cost, BADGE);
+        for (l, points) in loops.iter_mut().enumerate() {
+            for (i, point) in points.iter_mut().enumerate() {
+                ui.horizontal(|ui| {
+                    ui.label(format!("{l}.{i}"));
+                    for (x, axis) in [(&mut point.x, "x"), (&mut point.y, "y")] {
+                        let name = format!("{} {l}.{i} {axis}", row.key);
+                        outcome.changed |= field_ui(ui, row, &name, x, range);
+                    }
+                });
+            }
         }
     });
     explained(header.header_response, row, None);

@@ -113,7 +113,7 @@ pub(super) fn paths(scene: &Scene, selection: Selection) -> Vec<String> {
 /// Path and value as TOML of every parameter of a selection.
 fn texts(scene: &Scene, selection: Selection) -> Vec<(String, String)> {
     let mut scene = scene.clone();
-    let names = Names::of(&scene.materials);
+    let names = Names::of(&scene);
     let mut texts = Texts { prefix: String::new(), names: &names, list: Vec::new() };
     visit(&mut scene, selection, &mut texts);
     texts.list
@@ -179,7 +179,7 @@ pub(super) fn inspector_ui(
     if let Selection::Light(i) = selection {
         outcome.changed |= kind_ui(ui, &mut scene.lights[i], known.costs);
     }
-    let names = Names::of(&scene.materials);
+    let names = Names::of(scene);
     let saved = texts(known.saved, same_name(scene, known.saved, selection));
     ScrollArea::vertical().auto_shrink(false).id_salt(selection).show(ui, |ui| {
         kinds_ui(ui, scene, selection, &mut outcome);

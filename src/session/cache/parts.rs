@@ -24,7 +24,7 @@ record!(HighlightList { at: u32, mask: u16, full: u16, peak: f32 });
 record!(KeptNode { t: f64, primitive: u32, lights: u16, ends: Ends });
 record!(KeptLight { key: u16, crossed: u16 });
 record!(KeptStart { word: u32, node: u32, light: u32, crossing: u32 });
-record!(RayCounts { camera: u64, reflected: u64, transmitted: u64, shadow: u64 });
+record!(RayCounts { camera: u64, reflected: u64, transmitted: u64, shadow: u64, lost: u64 });
 record!(TraceReport { seconds: f64, fold_seconds: f64, rays: RayCounts, nodes: u64 });
 
 /// Makes a type whose values have bits of their own an [`Item`].

@@ -59,7 +59,33 @@ fn scaled(scene: &Scene, by: f64) -> Scene {
                 *max *= by;
             }
             Shape::Polygon { points } => points.iter_mut().for_each(|p| *p *= by),
-            Shape::Mesh { .. } | Shape::Knot { .. } => *scale *= by,
+            // What its operands are made of is scaled itself.
+            Shape::Csg { .. } => {}
+            Shape::Cylinder { from, to, radius } => {
+                *from *= by;
+                *to *= by;
+                *radius *= by;
+            }
+            Shape::Cone { from, to, radius, tip } => {
+                *from *= by;
+                *to *= by;
+                *radius *= by;
+                *tip *= by;
+            }
+            Shape::Torus { major, minor } => {
+                *major *= by;
+                *minor *= by;
+            }
+            Shape::Ellipsoid { center, radii } => {
+                *center *= by;
+                *radii *= by;
+            }
+            Shape::Prism { outline, bottom, top } => {
+                outline.iter_mut().flatten().for_each(|p| *p *= by);
+                *bottom *= by;
+                *top *= by;
+            }
+            Shape::Mesh { .. } | Shape::Knot { .. } | Shape::Quadric { .. } => *scale *= by,
         }
     }
     scene

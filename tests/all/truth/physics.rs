@@ -5,6 +5,7 @@ mod fresnel;
 mod furnace;
 mod gloss;
 mod models;
+mod nested;
 mod penumbra;
 mod refraction;
 mod shadow;

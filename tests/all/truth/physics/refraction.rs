@@ -210,7 +210,6 @@ fn layers_that_overlap() {
 }
 
 #[test]
-#[ignore = "the ray that left one of two coincident faces misses the other: it is at t = 0"]
 fn layers_in_exact_contact() {
     for degrees in ANGLES {
         stack(0.0, degrees, true).unwrap();
@@ -235,7 +234,6 @@ fn a_clear_box_on_a_floor_named_before_it() {
 }
 
 #[test]
-#[ignore = "the ray that left the box misses the floor in its face: it is at t = 0"]
 fn a_clear_box_on_a_floor_named_after_it() {
     box_on_floor(true);
 }

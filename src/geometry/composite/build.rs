@@ -1,0 +1,223 @@
+//! From the tree of operations to gates and leaves.
+
+use glam::DVec3;
+
+use super::leaf::Leaf;
+use super::{Child, Composite, Gate, NO_PARENT};
+use crate::geometry::placement::Placed;
+use crate::progress::{Cancelled, Progress};
+use crate::scene::csg::Operation;
+use crate::scene::motion::Motion;
+use crate::scene::{Placement, Scene, Shape};
+
+/// Where a solid is within those that are made of it: placements and motions, the outermost first.
+#[derive(Clone, Debug, Default)]
+pub(in crate::geometry) struct Chain {
+    links: Vec<(Placement, Motion)>,
+}
+
+impl Chain {
+    /// The same, with a solid's own placement in it.
+    pub(super) fn with(&self, scene: &Scene, solid: usize) -> Chain {
+        let solid = &scene.solids[solid];
+        let mut links = self.links.clone();
+        links.push((solid.placement.clone(), solid.motion.clone()));
+        Chain { links }
+    }
+
+    /// Whether anything of it moves.
+    pub(in crate::geometry) fn moves(&self) -> bool {
+        self.links.iter().any(|(_, motion)| !motion.is_none())
+    }
+
+    /// Whether the solid is in no other one.
+    pub(in crate::geometry) fn is_single(&self) -> bool {
+        self.links.len() == 1
+    }
+
+    /// world_from_object at a time.
+    pub(in crate::geometry) fn at(&self, time: f64) -> Placed {
+        let placed = |(placement, motion): &(Placement, Motion)| {
+            let moves = time != 0.0 && !motion.is_none();
+            if moves { Placed::new(&placement.at(motion, time)) } else { Placed::new(placement) }
+        };
+        let mut links = self.links.iter();
+        let first = links.next().map_or_else(|| Placed::new(&Placement::default()), placed);
+        links.fold(first, |outer, link| outer.of(&placed(link)))
+    }
+
+    /// By how much, at most, a point of an object at most `reach` from its origin moves per unit of
+    /// time until `shutter`.
+    pub(super) fn speed(&self, mut reach: f64, shutter: f64) -> f64 {
+        let mut speed = 0.0;
+        for (placement, motion) in self.links.iter().rev() {
+            let largest = placement.scale.max_element();
+            let turn = motion.rotate_degrees.abs().element_sum().to_radians();
+            (reach, speed) = (reach * largest, speed * largest);
+            speed += reach * turn + motion.translate.length();
+            reach += placement.translate.length() + motion.translate.length() * shutter;
+        }
+        speed
+    }
+}
+
+/// What a scene's solids are seen as.
+#[derive(Debug, Default)]
+pub(in crate::geometry) struct Parts {
+    /// Per solid where it is, if it is seen as it is.
+    pub(in crate::geometry) plain: Vec<Option<Chain>>,
+    /// Per solid what is to be made of others on its behalf: another solid, or itself, and where.
+    pub(in crate::geometry) made: Vec<Vec<(usize, Chain)>>,
+}
+
+impl Parts {
+    /// Those of a scene: a solid that no other is made of is seen, but for a union, of which the
+    /// operands are.
+    pub(in crate::geometry) fn of(scene: &Scene) -> Parts {
+        let moving = scene.shutter_time().is_some();
+        let count = scene.solids.len();
+        let mut parts = Parts { plain: vec![None; count], made: vec![Vec::new(); count] };
+        let mut uses = vec![0u32; count];
+        let operands = scene.solids.iter().flat_map(|solid| solid.shape.operands());
+        operands.for_each(|&operand| uses[operand] += 1);
+        for root in (0..count).filter(|&solid| uses[solid] == 0) {
+            let mut open = vec![(root, Chain::default().with(scene, root))];
+            while let Some((solid, chain)) = open.pop() {
+                match &scene.solids[solid].shape {
+                    Shape::Csg { operation: Operation::Union, operands } => {
+                        let within = |&operand| (operand, chain.with(scene, operand));
+                        open.extend(operands.iter().rev().map(within));
+                    }
+                    Shape::Csg { .. } => parts.made[root].push((solid, chain)),
+                    // What is there twice, or moves within what moves, is made of itself.
+                    _ if solid != root && (uses[solid] > 1 || (moving && chain.moves())) => {
+                        parts.made[root].push((solid, chain));
+                    }
+                    _ => parts.plain[solid] = Some(chain),
+                }
+            }
+        }
+        parts
+    }
+}
+
+/// A composite while it is built.
+struct Builder<'a> {
+    scene: &'a Scene,
+    /// Until when things move.
+    shutter: Option<f64>,
+    /// The number of the next primitive.
+    next: u32,
+    gates: Vec<Gate>,
+    leaves: Vec<Leaf>,
+}
+
+impl Composite {
+    /// Makes `solid`, whose primitives are numbered from `first` on.
+    pub(in crate::geometry) fn new(
+        scene: &Scene,
+        (solid, chain): (usize, Chain),
+        first: u32,
+        progress: &Progress,
+    ) -> Result<Composite, Cancelled> {
+        let shutter = scene.shutter_time();
+        let mut builder =
+            Builder { scene, shutter, next: first, gates: Vec::new(), leaves: Vec::new() };
+        let all = operation(&scene.solids[solid].shape, false).is_none_or(|(all, _)| all);
+        builder.gates.push(Gate::new(all, NO_PARENT));
+        builder.add(0, solid, &chain, false, progress)?;
+        let Builder { scene: _, shutter: _, next: _, mut gates, leaves } = builder;
+        finish(&mut gates, &leaves);
+        let size = leaves.iter().map(Leaf::size).fold(0.0, f64::max);
+        Ok(Composite { gates, leaves, solid: solid as u32, size })
+    }
+}
+
+/// Whether a solid made of others, or its complement, is all of its operands or any of them, and of
+/// which operands the complement is meant; `None` of a plain solid.
+fn operation(shape: &Shape, complement: bool) -> Option<(bool, Vec<(usize, bool)>)> {
+    let Shape::Csg { operation, operands } = shape else { return None };
+    let turned = |place: usize| match operation {
+        Operation::Union | Operation::Merge | Operation::Intersection => false,
+        Operation::Difference => place > 0,
+        Operation::Complement => true,
+    };
+    let all = !matches!(operation, Operation::Union | Operation::Merge);
+    let signed = operands.iter().enumerate();
+    let signed = signed.map(|(place, &operand)| (operand, turned(place) != complement));
+    Some((all != complement, signed.collect()))
+}
+
+impl Builder<'_> {
+    /// Adds a solid, or its complement, to a gate.
+    fn add(
+        &mut self,
+        gate: u32,
+        solid: usize,
+        chain: &Chain,
+        complement: bool,
+        progress: &Progress,
+    ) -> Result<(), Cancelled> {
+        progress.check()?;
+        let Some((all, operands)) = operation(&self.scene.solids[solid].shape, complement) else {
+            let made = (self.scene, solid, chain, self.shutter);
+            let number = self.leaves.len() as u32;
+            let leaf = Leaf::new(made, (number, self.next), (gate, complement), progress)?;
+            self.next += leaf.count();
+            self.gates[gate as usize].children.push(Child::Leaf(number));
+            self.leaves.push(leaf);
+            return Ok(());
+        };
+        let mut within = gate;
+        if all != self.gates[gate as usize].all {
+            within = self.gates.len() as u32;
+            self.gates[gate as usize].children.push(Child::Gate(within));
+            self.gates.push(Gate::new(all, gate));
+        }
+        for (operand, complement) in operands {
+            let chain = chain.with(self.scene, operand);
+            self.add(within, operand, &chain, complement, progress)?;
+        }
+        Ok(())
+    }
+}
+
+impl Gate {
+    fn new(all: bool, parent: u32) -> Gate {
+        Gate { all, parent, children: Vec::new(), start: 0, bounds: EVERYWHERE }
+    }
+}
+
+const EVERYWHERE: [DVec3; 2] = [DVec3::NEG_INFINITY, DVec3::INFINITY];
+
+/// Orders children, and finds out what is there at the beginning and where, children first.
+fn finish(gates: &mut [Gate], leaves: &[Leaf]) {
+    for i in (0..gates.len()).rev() {
+        let of = |child: &Child| match child {
+            Child::Leaf(leaf) => {
+                let leaf = &leaves[*leaf as usize];
+                (leaf.complement, if leaf.complement { EVERYWHERE } else { leaf.bounds })
+            }
+            Child::Gate(gate) => {
+                let gate = &gates[*gate as usize];
+                (gate.is_there_first(), gate.bounds)
+            }
+        };
+        let all = gates[i].all;
+        let known: Vec<(bool, [DVec3; 2])> = gates[i].children.iter().map(of).collect();
+        let mut bounds = known.iter().map(|(_, bounds)| *bounds);
+        let bounds = match all {
+            true => bounds.fold(EVERYWHERE, |[a, b], [lo, hi]| [a.max(lo), b.min(hi)]),
+            false => {
+                let first = bounds.next().unwrap_or(EVERYWHERE);
+                bounds.fold(first, |[a, b], [lo, hi]| [a.min(lo), b.max(hi)])
+            }
+        };
+        let start = known.iter().filter(|(there, _)| *there).count() as i32;
+        let mut order: Vec<usize> = (0..known.len()).collect();
+        let is_gate = |child: &Child| matches!(child, Child::Gate(_));
+        order.sort_by_key(|&k| (known[k].0, is_gate(&gates[i].children[k])));
+        let children = order.into_iter().map(|k| gates[i].children[k]).collect();
+        gates[i] = Gate { children, start, bounds, ..Gate::new(all, gates[i].parent) };
+    }
+}
