@@ -41,30 +41,51 @@ fn threads_memory_and_parts_change_no_bit() {
     }
 }
 
+/// Makes an edit and holds class, picture and sample map to those of a fresh trace; how many rays it
+/// cast, and how many a trace casts.
+fn edit(session: &mut Session, scene: &Scene, class: Class, what: &str) -> [u64; 2] {
+    assert_eq!(session.class_of(scene), class, "{what}: beforehand");
+    let report = session.edit(scene.clone(), &Progress::default()).unwrap();
+    assert_eq!(report.class, class, "{what}: {:?}", report.reason);
+    let fresh = open(scene, 2);
+    assert_same_picture(session, &fresh, what);
+    assert!(session.sample_map() == fresh.sample_map(), "{what}: numbers of samples");
+    session.transport().validate();
+    [report.rays.total(), fresh.trace_report().rays.total()]
+}
+
 #[test]
 fn every_edit_gives_what_a_fresh_trace_gives() {
     let mut session = open(&adaptive("glass", [96, 64]), 2);
+    let first = refined_share(&session, 16);
+    let mut least = first;
     for (path, value, class) in [
         ("materials.ruby.color", "[0.9, 0.4, 0.4]", Class::Reshade),
         ("materials.ruby.shininess", "33", Class::Refold),
-        ("materials.ruby.reflect", "0", Class::Retrace),
-        ("materials.ruby.reflect", "0.3", Class::Retrace),
-        ("materials.ruby.transmit", "0", Class::Retrace),
-        ("materials.ruby.transmit", "0.8", Class::Retrace),
+        ("materials.ruby.reflect", "0", Class::Regrow),
+        ("materials.ruby.reflect", "0.3", Class::Regrow),
+        ("materials.ruby.reflect", "0.29", Class::Reshade),
+        ("materials.ruby.transmit", "0", Class::Regrow),
+        ("materials.ruby.transmit", "0.8", Class::Regrow),
+        ("materials.ruby.ior", "1.3", Class::Regrow),
         ("lights.0.on", "false", Class::Reshade),
-        ("trace.depth", "2", Class::Retrace),
+        ("lights.0.point", "[1, -2, 6]", Class::Regrow),
+        ("trace.depth", "4", Class::Reshade),
+        ("trace.depth", "1", Class::Regrow),
+        ("trace.depth", "5", Class::Regrow),
+        ("trace.depth", "6", Class::Regrow),
     ] {
         let path = path.replace("lights.0", &format!("lights.{}", session.scene().lights[0].name));
         let mut scene = session.scene().clone();
         set(&mut scene, &path, value);
-        let report = session.edit(scene.clone(), &Progress::default()).unwrap();
-        assert_eq!(report.class, class, "{path} = {value}");
-        assert_same_picture(&session, &open(&scene, 2), &format!("{path} = {value}"));
+        let [rays, all] = edit(&mut session, &scene, class, &format!("{path} = {value}"));
+        assert!(rays < all, "{path} = {value}: {rays} of {all} rays");
+        least = refined_share(&session, 16).min(least);
     }
+    assert!(least < first, "without branches fewer pixels have all samples: {first}, {least}");
     let mut scene = session.scene().clone();
     scene.lights.pop();
-    session.edit(scene.clone(), &Progress::default()).unwrap();
-    assert_same_picture(&session, &open(&scene, 2), "a light less");
+    edit(&mut session, &scene, Class::Regrow, "a light less");
 }
 
 #[test]
@@ -74,16 +95,17 @@ fn by_contrast_every_edit_decides_again() {
     let mut session = open(&scene, 2);
     let before = refined_share(&session, 16);
     for (path, value, class) in [
-        ("materials.tiles.texture.checker.a", "[0.9, 0.9, 0.1]", Class::Retrace),
-        ("materials.tiles.shininess", "40", Class::Retrace),
+        ("materials.tiles.texture.checker.a", "[0.9, 0.9, 0.1]", Class::Regrow),
+        ("materials.tiles.shininess", "40", Class::Regrow),
         ("picture.exposure", "1", Class::Reshade),
-        ("materials.tiles.kloc", "0", Class::Retrace),
+        ("materials.tiles.kloc", "0", Class::Regrow),
+        ("materials.tiles.kloc", "0.8", Class::Regrow),
+        ("materials.tiles.reflect", "0.2", Class::Regrow),
+        ("materials.tiles.kloc", "0", Class::Regrow),
     ] {
         let mut scene = session.scene().clone();
         set(&mut scene, path, value);
-        let report = session.edit(scene.clone(), &Progress::default()).unwrap();
-        assert_eq!(report.class, class, "{path} = {value}");
-        assert_same_picture(&session, &open(&scene, 1), &format!("{path} = {value}"));
+        edit(&mut session, &scene, class, &format!("{path} = {value}"));
     }
     let after = refined_share(&session, 16);
     assert!(after < before, "a black floor has no contrast: {before} {after}");

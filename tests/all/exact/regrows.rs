@@ -232,12 +232,14 @@ fn step(session: &mut Session, scene: &Scene, random: &mut Random, what: &str) -
     };
     let fresh = open(scene, 2);
     assert_same_picture(session, &fresh, what);
+    assert!(session.sample_map() == fresh.sample_map(), "{what}: numbers of samples");
     session.transport().validate();
     assert_eq!(report.class.max(Class::Refold), beforehand.max(Class::Refold), "{what}: class");
     match &planned {
         Some(plan) => {
             assert_eq!(report.pixels, plan.pixels(), "{what}: pixels");
-            assert!(!whole || report.rays.camera == 0, "{what}: {:?}", report.rays);
+            let eyes = !whole || plan.unsettled.is_some();
+            assert!(eyes || report.rays.camera == 0, "{what}: {:?}", report.rays);
             assert!(report.rays.total() <= fresh.trace_report().rays.total(), "{what}");
             untouched(&before, session, plan, what);
         }
@@ -314,6 +316,19 @@ fn reopened(session: &Session, trees: bool) -> Session {
             .unwrap();
     assert_eq!((report.edit.class, report.edit.rays.total()), (Class::None, 0));
     opened
+}
+
+/// With enough samples that their number differs from pixel to pixel.
+fn adaptive(name: &str, samples: &str, refine: &str) -> Scene {
+    let mut scene = small(name);
+    set(&mut scene, "trace.samples", samples);
+    set(&mut scene, "trace.adaptive", "0.15");
+    set(&mut scene, "trace.refine", refine);
+    let session = open(&scene, 2);
+    let counts: Vec<u16> = session.sample_map().unwrap().to_list();
+    let of = |samples: usize| counts.iter().filter(|&&count| usize::from(count) == samples).count();
+    assert!(of(4) > 20 && of(8) > 20 && of(samples.parse().unwrap()) > 20, "{name}");
+    scene
 }
 
 fn small(name: &str) -> Scene {
@@ -428,6 +443,52 @@ fn lamps() {
 #[test]
 fn gallery() {
     wander("gallery", &small("gallery"), None);
+}
+
+#[test]
+fn whitted_adaptive() {
+    wander("whitted, adaptive", &adaptive("whitted", "16", "trees"), None);
+}
+
+#[test]
+fn glass_adaptive() {
+    wander("glass, adaptive", &adaptive("glass", "11", "trees"), None);
+}
+
+#[test]
+fn mesh_adaptive() {
+    wander("mesh, adaptive", &adaptive("mesh", "16", "trees"), None);
+}
+
+/// With an open lens, moving solids and a filter whose weights have signs.
+#[test]
+fn motion_adaptive() {
+    wander("motion, adaptive", &adaptive("motion", "24", "trees"), None);
+}
+
+#[test]
+fn gallery_adaptive() {
+    wander("gallery, adaptive", &adaptive("gallery", "9", "trees"), None);
+}
+
+#[test]
+fn plain_by_contrast() {
+    wander("plain, by contrast", &adaptive("plain", "16", "contrast"), None);
+}
+
+#[test]
+fn lamps_adaptive() {
+    let mut scene = read::text(LAMPS, Path::new("lamps.toml")).unwrap();
+    set(&mut scene, "trace.samples", "12");
+    set(&mut scene, "trace.adaptive", "0.3");
+    wander("lamps, adaptive", &scene, None);
+}
+
+#[test]
+fn adaptive_with_released_trees() {
+    let mut scene = adaptive("whitted", "16", "trees");
+    set(&mut scene, "picture.size", "[130, 70]");
+    wander("released, adaptive", &scene, Some(0.7));
 }
 
 #[test]
