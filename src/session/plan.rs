@@ -32,7 +32,7 @@ pub struct Plan {
     pub scope: Option<Scope>,
     /// The pixels whose first samples may see something else, where sampling is adaptive: from them
     /// follows how many samples they and their neighbours get, all of which are among `tiles`.
-    pub unsettled: Option<PixelSet>,
+    pub unsettled: Option<Arc<PixelSet>>,
 }
 
 /// Pixels of a tile.
@@ -150,7 +150,7 @@ impl Session {
                 reason.get_or_insert_with(|| self.comes_alive(id));
             }
         }
-        let unsettled = self.unsettled(scene, change, &concern, reason.is_some());
+        let unsettled = self.unsettled(scene, change, &concern, reason.is_some()).map(Arc::new);
         let mut tiles = concern.find(self);
         let mut scope = self.scope(change, nodes.is_empty(), &alive);
         if let Some(unsettled) = &unsettled {

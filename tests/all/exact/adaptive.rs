@@ -3,11 +3,16 @@
 use rayforest::film::Film;
 use rayforest::geometry::Geometry;
 use rayforest::progress::Progress;
+use rayforest::scene::change::Change;
+use rayforest::scene::path::parameters;
 use rayforest::scene::{Scene, read};
+use rayforest::session::Class::{self, Regrow, Reshade, Retrace};
 use rayforest::session::still::Still;
-use rayforest::session::{Class, Options, Session, cache};
+use rayforest::session::{Options, Session, cache};
 use rayon::ThreadPoolBuilder;
 
+use super::classes::row_of;
+use super::table::{self, Row, SCENE, row};
 use super::{PLENTY, assert_same_picture, film_difference, open, set, shipped};
 
 /// A shipped scene with adaptive sampling.
@@ -109,6 +114,92 @@ fn by_contrast_every_edit_decides_again() {
     }
     let after = refined_share(&session, 16);
     assert!(after < before, "a black floor has no contrast: {before} {after}");
+}
+
+/// What costs something else than where every pixel has all samples.
+const ROWS: &[Row] = &[
+    row("trace.adaptive", &[("0.1", Retrace), ("0", Retrace), ("@", Retrace)]),
+    row("trace.refine", &[("contrast", Retrace), ("trees", Retrace), ("@", Class::None)]),
+    // What is seen by more than two branches decides nothing.
+    row(
+        "trace.depth",
+        &[
+            ("3", Reshade),
+            ("4", Reshade),
+            ("2", Regrow),
+            ("4", Regrow),
+            ("0", Regrow),
+            ("5", Regrow),
+        ],
+    ),
+    row("materials.plain.reflect", BECOMES_MIRROR),
+    row("materials.tiles.reflect", BECOMES_MIRROR),
+    row("materials.lamp.reflect", BECOMES_MIRROR),
+    row("materials.plain.transmit", LETS_LIGHT_THROUGH),
+    row("materials.mirror.transmit", LETS_LIGHT_THROUGH),
+    row("materials.mirror.reflect", &[("0.49", Reshade), ("0", Regrow), ("@", Regrow)]),
+    row("materials.glass.transmit", &[("0.79", Reshade), ("0", Regrow), ("@", Regrow)]),
+];
+const BECOMES_MIRROR: &[(&str, Class)] = &[
+    ("0.004", Reshade),
+    ("0.01", Regrow),
+    ("0.009", Regrow),
+    ("0.5", Regrow),
+    ("0.49", Reshade),
+    ("0", Regrow),
+    ("[0, 0.004, 0]", Reshade),
+    ("@", Reshade),
+];
+const LETS_LIGHT_THROUGH: &[(&str, Class)] =
+    &[("0.004", Regrow), ("0", Regrow), ("0.5", Regrow), ("0", Regrow), ("@", Class::None)];
+
+/// What a step of a table costs where sampling is adaptive, if one can tell: reading trees again may
+/// give some pixel more samples.
+fn cost_here(path: &str, change: &Change, class: Class) -> Option<Class> {
+    let key = path.rsplit('.').next().unwrap_or_default();
+    let wakes = ["reflect", "transmit", "filter", "depth", "cutoff"].contains(&key);
+    let listed = ROWS.iter().any(|row| row.path == path);
+    match class {
+        Class::Refold if change.moves_rays.is_some() => Some(Regrow),
+        class => (listed || !wakes).then_some(class),
+    }
+}
+
+#[test]
+fn every_parameter_costs_what_the_table_says() {
+    let mut scene = read::text(SCENE, std::path::Path::new("all-kinds.toml")).unwrap();
+    set(&mut scene, "trace.samples", "9");
+    set(&mut scene, "trace.adaptive", "0.2");
+    let first = open(&scene, 2);
+    let counts = first.sample_map().unwrap().to_list();
+    let fewer = counts.iter().filter(|count| **count < 9).count();
+    assert!(fewer > 100 && counts.contains(&8) && counts.contains(&9));
+    let mut known = 0;
+    for parameter in parameters(&scene) {
+        let path = parameter.path.as_str();
+        let row = row_of(ROWS, path).or_else(|_| row_of(table::ROWS, path)).unwrap();
+        let mut session = open(&scene, 2);
+        for (value, class) in row.steps {
+            let value = if *value == "@" { parameter.value.as_str() } else { value };
+            let what = format!("{path} = {value}");
+            let mut edited = session.scene().clone();
+            set(&mut edited, path, value);
+            let change = Change::between(session.scene(), &edited);
+            let class = match *session.scene() == edited {
+                true => Some(Class::None),
+                false => cost_here(path, &change, *class),
+            };
+            known += usize::from(class.is_some());
+            let class = class.unwrap_or_else(|| session.class_of(&edited));
+            let [rays, all] = edit(&mut session, &edited, class, &what);
+            assert!(
+                if class == Retrace { rays == all } else { rays < all },
+                "{what}: {rays}, {all}"
+            );
+            assert!(class >= Regrow || rays == 0, "{what}");
+        }
+    }
+    assert!(known > 200, "{known}");
 }
 
 #[test]
