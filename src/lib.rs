@@ -38,7 +38,8 @@
 //! * **Samples** depend on the pixel, their index, the effect and the branch alone. Where sampling is
 //!   adaptive, a [`SampleMap`](forest::counts::SampleMap) follows from what every pixel's first samples
 //!   saw: a function of the scene. A sample of a pixel that has few weighs more; that is all that folding
-//!   knows of it. An edit after which the map could differ traces again.
+//!   knows of it. Where an edit lets first samples see something else, those of the pixels concerned are
+//!   read again from the kept trees, and they and their neighbours are decided and grown again.
 //! * **Keys.** A light that is moved gets a new key, so that records of where it was answer for
 //!   nothing; one that is removed leaves a gap in the list of factors, which is black. Materials are
 //!   not in the trees at all.

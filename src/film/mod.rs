@@ -2,6 +2,7 @@
 
 pub mod develop;
 pub mod layout;
+pub mod pixels;
 pub mod write;
 
 use crate::color::Rgb;

@@ -149,6 +149,7 @@ impl Grower<'_> {
     /// stays as it is in `old`, at the end of `sink.kept`.
     ///
     /// What is grown is what [`Grower::block_again`] grows, as far as it belongs to a term of the scope.
+    /// Every pixel has as many samples as it had.
     pub fn block_part(
         &self,
         worker: &mut Worker,
@@ -163,10 +164,11 @@ impl Grower<'_> {
         let mut kept = Some(old.recall(block));
         sink.block();
         for lane in 0..LANES {
-            if let Some(pixel) = self.layout.pixel(Place { tile, block, lane }) {
+            let place = Place { tile, block, lane };
+            if self.layout.pixel(place).is_some() {
                 let trees = (&mut kept, scope);
                 dispatch!(self.level, simd => {
-                    self.pixel_part(simd, worker, pixel, trees, sink, limits)
+                    self.pixel_part(simd, worker, place, trees, sink, limits)
                 })?;
             }
         }
@@ -179,13 +181,15 @@ impl Grower<'_> {
         &self,
         simd: S,
         worker: &mut Worker,
-        pixel: [u32; 2],
+        place: Place,
         (trees, scope): (&mut Option<Recall<'_>>, &Scope),
         sink: &mut Again,
         limits: Limits,
     ) -> Result<(), Stop> {
-        let eye = self.pixel_eye(pixel, self.samples);
-        for index in 0..self.samples {
+        let pixel = self.layout.pixel(place).expect("a lane with a pixel");
+        let count = self.count(place);
+        let eye = self.pixel_eye(pixel, count);
+        for index in 0..count {
             let at = Sample { pixel, index };
             // Weights stand beside all samples.
             let weighed = (!eye.is_plain()).then(|| self.eye_ray(eye, at, worker, sink));

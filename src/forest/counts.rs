@@ -2,9 +2,11 @@
 
 use super::grow::Grower;
 use super::signature::{PILOTS, Signature, Solids};
+use super::thin::ThinPixels;
 use super::tree::TileTrees;
 use crate::film::Frame;
 use crate::film::layout::{LANES, Layout, Place, TILE_BLOCKS};
+use crate::film::pixels::PixelSet;
 
 /// Places of a tile for pixels.
 const TILE_PLACES: usize = TILE_BLOCKS * LANES;
@@ -12,24 +14,65 @@ const TILE_PLACES: usize = TILE_BLOCKS * LANES;
 /// What is known of some tiles' pixels, by block and lane.
 type Tiles<T> = Vec<Option<Box<[T; TILE_PLACES]>>>;
 
-/// The number of samples of every pixel of some tiles: [`PILOTS`] or all.
+/// The number of samples of every pixel of some tiles: [`PILOTS`], twice as many, and so on, or all.
 ///
-/// A function of the scene: it follows from what the pixels' first samples saw, and their
-/// neighbours'. Written by `session` before it traces, read by `grow` and `fold`.
+/// A function of the scene: it follows from what the pixels' samples saw, and their neighbours' first
+/// ones. Written by `session` before it traces, read by `grow` and `fold`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampleMap {
     samples: u32,
     tiles: Tiles<u16>,
 }
 
-/// What the first samples of some tiles' pixels saw.
+/// What the first samples of some pixels saw.
 #[derive(Clone, Debug)]
 pub struct Signatures {
     layout: Layout,
     tiles: Tiles<Signature>,
 }
 
+/// By what is decided how many samples pixels get.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rule {
+    /// Samples of a pixel that has all of them.
+    pub samples: u32,
+    /// Numbers may differ by this much among the first samples.
+    pub step: f32,
+}
+
+impl Rule {
+    /// The number of samples of a pixel whose first `count` saw `own`.
+    ///
+    /// The more samples there are, the more they may differ: so does the error of their mean.
+    pub fn verdict(self, own: Signature, count: u32) -> u32 {
+        let step = self.step * (count as f32 / PILOTS as f32).sqrt();
+        match () {
+            () if own.is_torn() => self.samples,
+            () if own.is_spread(step) => self.after(count),
+            () => count,
+        }
+    }
+
+    /// The number of samples after this one.
+    pub fn after(self, count: u32) -> u32 {
+        (2 * count).min(self.samples)
+    }
+
+    /// Whether some pixel may have so many.
+    fn allows(self, count: u32) -> bool {
+        count == self.samples
+            || count < self.samples
+                && (count / PILOTS).is_power_of_two()
+                && count.is_multiple_of(PILOTS)
+    }
+}
+
 impl SampleMap {
+    /// Nothing is known of any tile; pixels have at most `samples`.
+    pub fn unknown(layout: Layout, samples: u32) -> SampleMap {
+        SampleMap { samples, tiles: vec![None; layout.tiles()] }
+    }
+
     /// [`PILOTS`] for every pixel.
     pub fn of_pilots(layout: Layout) -> SampleMap {
         let tile = || Some(Box::new([PILOTS as u16; TILE_PLACES]));
@@ -44,7 +87,8 @@ impl SampleMap {
     /// What [`SampleMap::to_list`] gave of a picture where a pixel has at most `samples`; `None` if it
     /// cannot have given it.
     pub fn from_list(layout: Layout, samples: u32, list: &[u16]) -> Option<SampleMap> {
-        let known = |&count: &u16| [PILOTS, samples].contains(&u32::from(count));
+        let rule = Rule { samples, step: 0.0 };
+        let known = |&count: &u16| rule.allows(count.into());
         if list.len() != layout.tiles() * TILE_PLACES || !list.iter().all(known) {
             return None;
         }
@@ -83,6 +127,13 @@ impl SampleMap {
         let counts = self.tiles[tile].as_ref().expect("the counts of a tile to be grown");
         u32::from(counts[block * LANES + lane])
     }
+
+    /// Gives a pixel so many samples; all others of a tile of which nothing was known have [`PILOTS`].
+    pub fn set(&mut self, Place { tile, block, lane }: Place, count: u32) {
+        let tile = &mut self.tiles[tile];
+        let counts = tile.get_or_insert_with(|| Box::new([PILOTS as u16; TILE_PLACES]));
+        counts[block * LANES + lane] = count as u16;
+    }
 }
 
 impl Signatures {
@@ -91,48 +142,37 @@ impl Signatures {
         Signatures { layout, tiles: vec![None; layout.tiles()] }
     }
 
-    /// Notes what was found in a tile, block after block.
-    pub fn put(&mut self, tile: usize, found: &[Signature]) {
-        let mut own = Box::new([Signature::default(); TILE_PLACES]);
-        own.copy_from_slice(found);
-        self.tiles[tile] = Some(own);
+    /// Notes what was found in a block.
+    pub fn put(&mut self, (tile, block): (usize, usize), found: &[Signature; LANES]) {
+        let tile = &mut self.tiles[tile];
+        let own = tile.get_or_insert_with(|| Box::new([Signature::default(); TILE_PLACES]));
+        own[block * LANES..][..LANES].copy_from_slice(found);
     }
 
-    fn of(&self, pixel: [u32; 2]) -> Option<Signature> {
+    fn of(&self, pixel: [u32; 2]) -> Signature {
         let Place { tile, block, lane } = self.layout.place(pixel);
-        self.tiles[tile].as_ref().map(|tile| tile[block * LANES + lane])
+        let known = self.tiles[tile].as_ref().expect("signatures of all that is compared");
+        known[block * LANES + lane]
     }
 
-    /// Decides for some tiles, whose neighbours are known too: a pixel gets all samples if its own
-    /// first ones differ, or differ from those of any of its eight neighbours, or if `thin` says so.
-    pub fn decide(
-        &self,
-        tiles: &[usize],
-        samples: u32,
-        step: f32,
-        thin: impl Fn([u32; 2]) -> bool,
-    ) -> SampleMap {
-        let mut map = SampleMap { samples, tiles: vec![None; self.layout.tiles()] };
-        for &tile in tiles {
-            let mut counts = Box::new([PILOTS as u16; TILE_PLACES]);
-            for block in 0..TILE_BLOCKS {
-                for lane in 0..LANES {
-                    let pixel = self.layout.pixel(Place { tile, block, lane });
-                    if pixel.is_some_and(|pixel| thin(pixel) || self.is_busy(pixel, step)) {
-                        counts[block * LANES + lane] = samples as u16;
-                    }
-                }
-            }
-            map.tiles[tile] = Some(counts);
+    /// Decides for some pixels, of which and of whose neighbours the first [`PILOTS`] samples are known:
+    /// those whose own differ get more, and those that differ from any of their eight neighbours, or that
+    /// see something thin.
+    pub fn decide(&self, wanted: &PixelSet, rule: Rule, thin: &ThinPixels, map: &mut SampleMap) {
+        for place in wanted.places() {
+            let Some(pixel) = self.layout.pixel(place) else { continue };
+            let own = self.of(pixel);
+            let count = match rule.verdict(own, PILOTS) {
+                _ if thin.contains(pixel) => rule.samples,
+                PILOTS if self.stands_out(pixel, own, rule.step) => rule.after(PILOTS),
+                count => count,
+            };
+            map.set(place, count);
         }
-        map
     }
 
-    fn is_busy(&self, pixel: [u32; 2], step: f32) -> bool {
-        let Some(own) = self.of(pixel) else { return false };
-        own.is_mixed(step)
-            || neighbours(pixel, self.layout.size)
-                .any(|other| self.of(other).is_some_and(|other| own.differs(other, step)))
+    fn stands_out(&self, pixel: [u32; 2], own: Signature, step: f32) -> bool {
+        neighbours(pixel, self.layout.size).any(|other| own.differs(self.of(other), step))
     }
 }
 
@@ -164,7 +204,13 @@ impl<'a> Grower<'a> {
         })
     }
 
-    /// What the first samples of a block just grown saw, all lanes having [`PILOTS`].
+    /// The number of samples of a pixel.
+    #[inline(always)]
+    pub(super) fn count(&self, place: Place) -> u32 {
+        self.map.map_or(self.samples, |map| map.of(place))
+    }
+
+    /// What the samples of a block just grown saw.
     pub fn signatures(&self, grown: &TileTrees, at: (usize, usize)) -> [Signature; LANES] {
         let mut reader = grown.read(0);
         self.counts(at).map(|count| Signature::read(&mut reader, count, self))

@@ -7,7 +7,7 @@ use super::camera::View;
 use super::cone::Cone;
 use super::counts::SampleMap;
 use super::eye::Eye;
-use super::kept::{Recall, Recalled};
+use super::kept::{Recall, Recalled, Recalls};
 use super::lamp::Lamp;
 use super::media::{Crossing, Media};
 pub use super::rays::RayCounts;
@@ -286,22 +286,23 @@ impl<'a> Grower<'a> {
         most: usize,
         progress: &Progress,
     ) -> Result<(), Stop> {
-        self.block_again(worker, at, None, sink, most, progress)
+        self.block_again(worker, at, Recalls::default(), sink, most, progress)
     }
 
     /// The same from kept trees of the block, if there are any: only rays of which they know
     /// nothing are cast. Gives what [`Grower::block`] gives.
-    pub fn block_again<K: Sink>(
+    pub fn block_again<'k, K: Sink>(
         &self,
         worker: &mut Worker,
         (tile, block): (usize, usize),
-        mut kept: Option<Recall<'_>>,
+        kept: impl Into<Recalls<'k>>,
         sink: &mut K,
         most: usize,
         progress: &Progress,
     ) -> Result<(), Stop> {
         worker.pending.clear();
         let limits = Limits { most, progress };
+        let mut kept = kept.into();
         sink.block();
         for lane in 0..LANES {
             let place = Place { tile, block, lane };
@@ -319,27 +320,33 @@ impl<'a> Grower<'a> {
         simd: S,
         worker: &mut Worker,
         place: Place,
-        kept: &mut Option<Recall<'_>>,
+        Recalls { first, rest }: &mut Recalls<'_>,
         sink: &mut K,
         limits: Limits,
     ) -> Result<(), Stop> {
         let pixel = self.layout.pixel(place).expect("a lane with a pixel");
-        let count = self.map.map_or(self.samples, |map| map.of(place));
-        let known = kept.as_ref().map_or(0, |kept| kept.count(place.lane).unwrap_or(self.samples));
+        let count = self.count(place);
+        let known = |kept: &Option<Recall>| {
+            kept.as_ref().map_or(0, |kept| kept.count(place.lane).unwrap_or(self.samples))
+        };
+        let (at_first, known) = (known(first), known(rest));
+        let skip = |rest: &mut Option<Recall>, samples: std::ops::Range<u32>| {
+            samples.for_each(|_| rest.iter_mut().for_each(Recall::skip_sample));
+        };
+        skip(rest, 0..at_first.min(known));
         let eye = self.pixel_eye(pixel, count);
         for index in 0..count {
             worker.sample = Sample { pixel, index };
             let ray = self.eye_ray(eye, worker.sample, worker, sink);
-            let kept = if index < known { &mut *kept } else { &mut None };
+            let kept = match index {
+                index if index < at_first => &mut *first,
+                index if index < known => &mut *rest,
+                _ => &mut None,
+            };
             self.sample(simd, worker, ray, kept, sink, limits)?;
         }
-        for _ in count..known {
-            if let Some(kept) = kept.as_mut()
-                && kept.sample()
-            {
-                kept.skip();
-            }
-        }
+        skip(first, count..at_first);
+        skip(rest, count.max(at_first)..known);
         Ok(())
     }
 
@@ -494,6 +501,7 @@ impl<'a> Grower<'a> {
             self.light(simd, worker, &site, light, &mut recalled, sink)?;
         }
         let ends = recalled.map(|r| r.node.ends);
+        let current = recalled.is_some_and(|r| r.current);
         let mut queue = |followed, by: f32, side, medium, known| {
             // The ray of what is not followed is of no use.
             let (path, ray, leaving) = match followed {
@@ -525,14 +533,14 @@ impl<'a> Grower<'a> {
         let straight = !self.bent.get(at.solid as usize).is_some_and(|bent| *bent);
         let before = self.before.lobes[at.solid as usize];
         if let Some(transmitted) = transmitted {
-            let same =
-                straight && before[1] == translucency && self.refracts_as_before(&crossing, eta);
+            let same = current
+                || straight && before[1] == translucency && self.refracts_as_before(&crossing, eta);
             let known = known(ends.map(Ends::transmitted), same, transmitted.is_ok());
             queue(transmitted, passed, Side::Transmitted, crossing.behind, known);
         } else if ends.map(Ends::transmitted) == Some(Branch::Grown) {
             queue(Err(End::Zero), 0.0, Side::Transmitted, crossing.front, Known::Dropped);
         }
-        let same = straight && before[0] == gloss;
+        let same = current || straight && before[0] == gloss;
         let known = known(ends.map(Ends::reflected), same, reflected.is_ok());
         queue(reflected, mirrored, Side::Reflected, crossing.front, known);
         Ok(())

@@ -167,6 +167,12 @@ impl KeptTrees {
         self.end_block();
     }
 
+    /// Appends a block of which nothing is known: no lane of it has a sample.
+    pub fn push_unknown(&mut self) {
+        self.push_counts(&[0; LANES]);
+        self.end_block();
+    }
+
     /// Appends what stands in other trees between two positions of a sample's tree.
     pub(super) fn push_range(&mut self, other: &KeptTrees, from: KeptStart, to: KeptStart) {
         let range = |a: u32, b: u32| a as usize..b as usize;
@@ -209,7 +215,13 @@ impl KeptTrees {
     /// Reads a block's samples in order.
     pub fn recall(&self, block: usize) -> Recall<'_> {
         let at = self.blocks[block];
-        Recall { trees: self, block, at, bit: 0 }
+        Recall { trees: self, block, at, bit: 0, current: false }
+    }
+
+    /// The same of trees that were grown of the scene of today: every ray that is followed goes on as
+    /// it did.
+    pub fn recall_current(&self, block: usize) -> Recall<'_> {
+        Recall { current: true, ..self.recall(block) }
     }
 }
 
@@ -225,6 +237,22 @@ pub struct Recall<'a> {
     block: usize,
     at: KeptStart,
     bit: u32,
+    current: bool,
+}
+
+/// What is known of a block's samples.
+#[derive(Default)]
+pub struct Recalls<'a> {
+    /// Of the first samples, as many as it counts: trees of the scene of today.
+    pub first: Option<Recall<'a>>,
+    /// Of all others, and of those too where the above knows nothing.
+    pub rest: Option<Recall<'a>>,
+}
+
+impl<'a> From<Option<Recall<'a>>> for Recalls<'a> {
+    fn from(rest: Option<Recall<'a>>) -> Recalls<'a> {
+        Recalls { first: None, rest }
+    }
 }
 
 /// A kept node with what its shadow rays met.
@@ -232,6 +260,8 @@ pub struct Recall<'a> {
 pub struct Recalled<'a> {
     /// The node.
     pub node: &'a KeptNode,
+    /// Whether its rays go on as they did.
+    pub(super) current: bool,
     lights: &'a [KeptLight],
     crossings: &'a [u32],
 }
@@ -266,7 +296,7 @@ impl<'a> Recall<'a> {
         self.at.node += 1;
         self.at.light += u32::from(node.lights);
         self.at.crossing += lights.iter().map(|light| light.entries() as u32).sum::<u32>();
-        Recalled { node, lights, crossings }
+        Recalled { node, current: self.current, lights, crossings }
     }
 
     /// The next node, which is still to be read.
@@ -280,6 +310,14 @@ impl<'a> Recall<'a> {
         let from = self.at;
         self.skip();
         into.push_range(self.trees, from, self.at);
+    }
+
+    /// Passes over the next sample.
+    #[inline(always)]
+    pub(super) fn skip_sample(&mut self) {
+        if self.sample() {
+            self.skip();
+        }
     }
 
     /// Passes over a node and all below it.

@@ -1,4 +1,4 @@
-//! What the first samples of a pixel saw, from which follows whether it needs all of them.
+//! What samples of a pixel saw, from which follows whether it needs more of them.
 
 use crate::color::Rgb;
 pub use crate::scene::PILOTS;
@@ -8,12 +8,12 @@ use crate::geometry::Tone;
 
 /// Levels of a tree that count: the surface seen, what it mirrors or shows behind it, and what that
 /// does.
-const LEVELS: usize = 3;
+pub const LEVELS: usize = 3;
 
 /// What is compared as a number, in the range that the samples of a pixel have of it.
 const VALUES: usize = 3;
 
-/// What the pilot samples of one pixel saw: 16 bytes.
+/// What the first samples of one pixel saw: 16 bytes.
 ///
 /// Colours, coefficients and the strength of lights do not enter, only which branches live: an edit
 /// of them leaves it alone. Numbers are in 4096ths, at most 16.
@@ -63,15 +63,20 @@ impl Signature {
         }
     }
 
-    /// Whether the pixel's own samples differ, in numbers by more than `step`.
-    pub fn is_mixed(self, step: f32) -> bool {
-        self.seen & 1 != 0 || self.spread() > in_units(step)
+    /// Whether samples saw different things.
+    pub fn is_torn(self) -> bool {
+        self.seen & 1 != 0
+    }
+
+    /// Whether the numbers of its samples differ by more than `step`.
+    pub fn is_spread(self, step: f32) -> bool {
+        self.spread() > in_units(step)
     }
 
     /// Whether the samples of two pixels differ, in numbers by more than `step`.
     pub fn differs(self, other: Signature, step: f32) -> bool {
         let both = self.and(other);
-        both.seen & 1 != 0 || both.spread() > in_units(step)
+        both.is_torn() || both.is_spread(step)
     }
 
     fn spread(self) -> u16 {
@@ -166,7 +171,10 @@ impl Hash {
 
     /// Gives whether the light arrives.
     fn light(&mut self, hit: &LightHit, crossed: &[u32], solids: &impl Solids) -> bool {
-        let stopped = [BLOCKED, BEHIND].contains(&hit.crossed)
+        // A light that shows nothing counts as if something stood before it, whatever does.
+        let idle = hit.n_dot_l <= 0.0 && !hit.is_behind();
+        let stopped = idle
+            || [BLOCKED, BEHIND].contains(&hit.crossed)
             || crossed.iter().any(|&solid| solids.is_opaque(solid));
         self.add(u32::from(hit.light) << 1 | u32::from(stopped));
         if !stopped {

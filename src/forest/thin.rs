@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use glam::{DVec2, DVec3};
 
 use super::camera::View;
-use crate::geometry::corners;
+use crate::geometry::parts;
 use crate::scene::Scene;
 
 /// A thing is thin if its picture's least width is less, in pixels: two samples of a pixel are about
@@ -14,9 +14,10 @@ const THIN: f64 = 1.5;
 /// Marks for one thing at most: a wire across the largest picture.
 const MOST_MARKS: usize = 1 << 18;
 
-/// The pixels where spheres, boxes and polygons are seen whose picture is thinner than 1½ pixels.
+/// The pixels where solids, or stretches of a knot's tube, are seen whose picture is thinner than 1½
+/// pixels.
 ///
-/// Those of a mesh, a knot or a sphereflake are not looked for; nor is what is seen in mirrors.
+/// Parts of a mesh and spheres of a sphereflake are not looked for; nor is what is seen in mirrors.
 #[derive(Clone, Debug, Default)]
 pub struct ThinPixels {
     pixels: HashSet<[u32; 2]>,
@@ -28,9 +29,11 @@ impl ThinPixels {
         let view = View::new(&scene.camera, scene.picture.size);
         let mut pixels = HashSet::new();
         for solid in &scene.solids {
-            let seen = corners(solid).and_then(|corners| project(&view, &corners));
-            if let Some(strip) = seen.and_then(|points| Strip::around(&points)) {
-                strip.mark(scene.picture.size, &mut pixels);
+            for part in parts(solid) {
+                let seen = project(&view, &part);
+                if let Some(strip) = seen.and_then(|points| Strip::around(&points)) {
+                    strip.mark(scene.picture.size, &mut pixels);
+                }
             }
         }
         ThinPixels { pixels }
@@ -91,6 +94,9 @@ impl Strip {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::Arc;
+
+    use crate::scene::mesh::Mesh;
     use crate::scene::{Camera, Lens, Placement, Shape, Solid};
 
     /// A bar of this thickness, in pixels of a picture of 64 × 48, across the picture's middle.
@@ -124,5 +130,29 @@ mod tests {
         assert!((12..52).all(|x| thin.contains([x, 23]) && thin.contains([x, 24])));
         assert!(!thin.contains([32, 30]) && !thin.contains([5, 24]));
         assert!(ThinPixels::of(&bar(4.0)).pixels.is_empty());
+    }
+
+    #[test]
+    fn so_is_a_thin_tube_along_its_curve_and_a_thin_mesh() {
+        let mut scene = bar(1.0);
+        let knot = |tube| Shape::Knot { turns: [2, 3], tube, segments: [120, 8] };
+        scene.solids[0].placement.scale = DVec3::splat(14.0);
+        scene.solids[0].shape = knot(0.02);
+        let thin = ThinPixels::of(&scene);
+        // Seen along y: the curve (1 + cos(3φ)/2)·cos 2φ, sin(3φ)/2.
+        for i in 0..500 {
+            let phi = f64::from(i) * 0.012_57;
+            let x = (1.0 + libm::cos(3.0 * phi) / 2.0) * libm::cos(2.0 * phi);
+            let at = [32.0 + 14.0 * x, 24.0 - 7.0 * libm::sin(3.0 * phi)];
+            assert!(thin.contains(at.map(|c| c as u32)), "{phi}: {at:?}");
+        }
+        assert!(!thin.contains([2, 2]) && !thin.contains([32, 2]));
+        scene.solids[0].shape = knot(0.3);
+        assert!(ThinPixels::of(&scene).pixels.is_empty());
+        let positions = vec![DVec3::ZERO, DVec3::X, DVec3::new(0.5, 0.0, 0.01)];
+        let mesh = Mesh { positions, triangles: vec![[0, 1, 2]], ..Mesh::default() };
+        scene.solids[0].shape = Shape::Mesh { file: "blade.obj".into(), mesh: Arc::new(mesh) };
+        let thin = ThinPixels::of(&scene);
+        assert!((33..45).all(|x| thin.contains([x, 23])) && !thin.contains([20, 23]));
     }
 }

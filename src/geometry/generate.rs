@@ -46,7 +46,7 @@ pub(super) fn knot(
 }
 
 /// Point, torus normal and binormal (tangent × normal) of the knot at `phi` radians.
-fn knot_frame([p, q]: [u32; 2], phi: f64) -> (DVec3, DVec3, DVec3) {
+pub(super) fn knot_frame([p, q]: [u32; 2], phi: f64) -> (DVec3, DVec3, DVec3) {
     let (p, q) = (f64::from(p), f64::from(q));
     let (sp, cp) = (libm::sin(p * phi), libm::cos(p * phi));
     let (sq, cq) = (libm::sin(q * phi), libm::cos(q * phi));

@@ -203,12 +203,17 @@ pub fn corners(solid: &Solid) -> Option<Vec<DVec3>> {
         | Shape::Csg { .. }
         | Shape::Sphereflake { .. } => return None,
     };
+    Some(box_corners([min, max], &placed))
+}
+
+/// The corners in world space of a box in a solid's own frame.
+pub(super) fn box_corners([min, max]: [DVec3; 2], placed: &Placed) -> Vec<DVec3> {
     let corner = |i: u32| {
         let pick =
             |bit: u32, axis: fn(DVec3) -> f64| axis(if i >> bit & 1 == 0 { min } else { max });
         placed.point(DVec3::new(pick(0, |v| v.x), pick(1, |v| v.y), pick(2, |v| v.z)))
     };
-    Some((0..8).map(corner).collect())
+    (0..8).map(corner).collect()
 }
 
 #[cfg(test)]

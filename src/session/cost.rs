@@ -1,20 +1,17 @@
 //! What editing a parameter will cost, known before it is touched.
 
+use super::knob::{Knob, Way};
 use super::plan::Plan;
 use super::{Session, Work};
-use crate::color::Rgb;
 use crate::film::layout::Layout;
-use crate::fold::trie::ROOT;
 use crate::scene::change::Change;
-use crate::scene::factor::{Factor, FactorValues, Kind};
-use crate::scene::fields::{COEFFICIENT, DEPTH, SHARE, WEIGHT};
+use crate::scene::refine::Refine;
 use crate::scene::{Scene, path};
-use crate::shade::terms::frontier_lives;
 
 /// The cost of setting one parameter to another value, all others staying as they are.
 ///
 /// Values of a colour or per-channel coefficient are compared per channel: "up to x" holds if no
-/// channel is above the larger of its present value and x.
+/// channel is above the larger of its present value and x; "down to x" if none is below the smaller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cost {
     /// Any value is a re-shade.
@@ -23,6 +20,9 @@ pub enum Cost {
     InstantUpTo(f64, Pixels),
     /// A re-shade for values ≥ this; rays for values below it, for these pixels just below it.
     InstantDownTo(f64, Pixels),
+    /// A re-shade for values from the first to the second; for others the trees of these pixels, just
+    /// beyond, are read or grown again.
+    InstantWithin([f64; 2], Pixels),
     /// A re-shade for values ≥ this; for values below it the kept trees of these pixels are read
     /// again.
     RereadBelow(f64, Pixels),
@@ -50,19 +50,23 @@ pub struct Pixels {
     pub rays: u64,
     /// Whether the kept trees of some of them were released for memory: there every ray is cast.
     pub released: bool,
+    /// Whether fewer may do: those that more samples are given, or fewer, are known when the first ones
+    /// were read again.
+    pub at_most: bool,
 }
 
 impl Pixels {
     /// Those of a plan.
     fn of(plan: &Plan, layout: Layout) -> Pixels {
         let (count, of) = (plan.pixels(), layout.pixels());
-        Pixels { count, of, rays: plan.rays(), released: plan.released > 0 }
+        let at_most = plan.unsettled.is_some();
+        Pixels { count, of, rays: plan.rays(), released: plan.released > 0, at_most }
     }
 
     /// All of a picture.
     fn all(layout: Layout) -> Pixels {
         let of = layout.pixels();
-        Pixels { count: of, of, rays: 0, released: false }
+        Pixels { count: of, of, rays: 0, released: false, at_most: false }
     }
 }
 
@@ -80,11 +84,17 @@ pub fn cost(session: &mut Session, path: &str) -> Option<Cost> {
         return special;
     }
     Some(match knob(session.scene(), &altered) {
-        // Which pixels get all samples may change with any branch that begins or ceases to live.
-        Some(_) if session.is_adaptive() => Cost::TraceAll,
-        Some(knob) => knob.cost(session),
-        None => cost_of(session, &altered),
+        // Where colours are compared, any other one may give some pixel more samples.
+        Some(knob) if !session.compares_colors() => cost_of_knob(session, knob),
+        _ => cost_of(session, &altered),
     })
+}
+
+impl Session {
+    /// Whether colours decide how many samples pixels get.
+    fn compares_colors(&self) -> bool {
+        self.is_adaptive() && self.scene.trace.refine == Refine::Contrast
+    }
 }
 
 /// The cost of an index of refraction that does not show as it is; `None` for other parameters.
@@ -159,195 +169,26 @@ fn cost_of(session: &mut Session, altered: &Scene) -> Cost {
     }
 }
 
-/// A parameter that the rule of liveness reads.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Knob {
-    /// Of the material with this index.
-    Reflect(usize),
-    /// Of the material with this index.
-    Transmit(usize),
-    /// Of the material with this index.
-    Filter(usize),
-    /// The limit of depth.
-    Depth,
-    /// The limit of weight: lower values let more live.
-    Cutoff,
-}
-
-impl Knob {
-    /// The one that differs.
-    fn between(scene: &Scene, altered: &Scene) -> Option<Knob> {
-        let (old, new) = (&scene.trace, &altered.trace);
-        if old.depth != new.depth {
-            return Some(Knob::Depth);
-        }
-        if old.cutoff != new.cutoff {
-            return Some(Knob::Cutoff);
-        }
-        let mut pairs = scene.materials.iter().zip(&altered.materials).enumerate();
-        pairs.find_map(|(i, (a, b))| {
-            let reflect = (a.reflect != b.reflect).then_some(Knob::Reflect(i));
-            let transmit = (a.transmit != b.transmit).then_some(Knob::Transmit(i));
-            reflect.or(transmit).or((a.filter != b.filter).then_some(Knob::Filter(i)))
-        })
-    }
-
-    /// The coefficient that it sets.
-    fn coefficient(self, scene: &mut Scene) -> Option<&mut Rgb> {
-        match self {
-            Knob::Reflect(i) => Some(&mut scene.materials[i].reflect),
-            Knob::Transmit(i) => Some(&mut scene.materials[i].transmit),
-            Knob::Filter(i) => Some(&mut scene.materials[i].filter),
-            Knob::Depth | Knob::Cutoff => None,
-        }
-    }
-
-    /// Steps of the parameter that let ever more live, from its present value to the end of its
-    /// range: the bits of a positive float are in the order of its values.
-    fn steps(self, scene: &Scene) -> [u32; 2] {
-        let bits = |x: f32| (x + 0.0).to_bits();
-        match self {
-            Knob::Depth => [scene.trace.depth, DEPTH.high as u32],
-            Knob::Cutoff => {
-                let top = bits(SHARE.high as f32);
-                [top - bits(scene.trace.cutoff), top - bits(SHARE.low as f32)]
-            }
-            _ => {
-                let range = if matches!(self, Knob::Filter(_)) { COEFFICIENT } else { WEIGHT };
-                let present = self.coefficient(&mut scene.clone()).map_or(Rgb::BLACK, |c| *c);
-                let Rgb([r, g, b]) = present;
-                [bits(r.min(g).min(b)), bits(range.high as f32)]
-            }
-        }
-    }
-
-    /// The value at a step.
-    fn value(self, step: u32) -> f64 {
-        match self {
-            Knob::Depth => f64::from(step),
-            Knob::Cutoff => f64::from(f32::from_bits((SHARE.high as f32).to_bits() - step)),
-            _ => f64::from(f32::from_bits(step)),
-        }
-    }
-
-    /// All factors, with the parameter at a step.
-    fn factors(self, scene: &mut Scene, present: &Scene, step: u32) -> FactorValues {
-        let value = self.value(step);
-        match self {
-            Knob::Depth => scene.trace.depth = step,
-            Knob::Cutoff => scene.trace.cutoff = value as f32,
-            _ => {
-                let before = self.coefficient(&mut present.clone()).map(|c| *c);
-                let raised = before.map(|c| c.map(|c| c.max(value as f32)));
-                if let (Some(coefficient), Some(raised)) = (self.coefficient(scene), raised) {
-                    *coefficient = raised;
-                }
-            }
-        }
-        FactorValues::new(scene)
-    }
-
-    /// Whether a factor depends on it.
-    fn concerns(self, factor: Factor) -> bool {
-        let mirror = matches!(factor.kind(), Kind::Reflect | Kind::TotalReflect);
-        let through = matches!(factor.kind(), Kind::Transmit | Kind::Shadow | Kind::TotalReflect);
-        match self {
-            Knob::Reflect(material) => mirror && factor.index() == material,
-            Knob::Transmit(material) => through && factor.index() == material,
-            Knob::Filter(material) => through && factor.index() == material,
-            Knob::Depth | Knob::Cutoff => true,
-        }
-    }
-
-    fn cost(self, session: &mut Session) -> Cost {
-        let [first, last] = self.steps(session.scene());
-        let limit = Search::new(self, session.scene(), first, last).limit(session);
-        let limit = limit.min(self.stale_from(session, first).unwrap_or(last));
-        if limit == last {
-            return Cost::Instant;
-        }
-        let mut beyond = session.scene().clone();
-        self.factors(&mut beyond, session.scene(), limit + 1);
-        let change = Change::between(session.scene(), &beyond);
-        let layout = session.transport.layout;
-        let pixels = match session.work(&beyond, &change) {
+/// The cost of what may bring a branch to life, or end one.
+fn cost_of_knob(session: &mut Session, knob: Knob) -> Cost {
+    let layout = session.transport.layout;
+    let mut limit = |way| {
+        let (value, work) = knob.limit(session, way)?;
+        let pixels = match work {
             Work::Regrow(plan) => Pixels::of(&plan, layout),
             Work::Shade | Work::Trace(_) => Pixels::all(layout),
         };
-        match self {
-            Knob::Cutoff => Cost::InstantDownTo(self.value(limit), pixels),
-            _ => Cost::InstantUpTo(self.value(limit), pixels),
+        Some((value, pixels))
+    };
+    let (more, less) = (limit(Way::More), limit(Way::Less));
+    let (low, high) = if knob == Knob::Cutoff { (more, less) } else { (less, more) };
+    match (low, high) {
+        (None, None) => Cost::Instant,
+        (None, Some((high, pixels))) => Cost::InstantUpTo(high, pixels),
+        (Some((low, pixels)), None) => Cost::InstantDownTo(low, pixels),
+        (Some((low, below)), Some((high, above))) => {
+            let most = if below.count > above.count { below } else { above };
+            Cost::InstantWithin([low, high], most)
         }
-    }
-
-    /// The last step at which an index of refraction or a lobe that the trees were not grown with does
-    /// not matter, if it matters beyond: of this material, or an index of another, which has a denser one
-    /// before it as soon as light passes through this one.
-    fn stale_from(self, session: &Session, first: u32) -> Option<u32> {
-        let (Knob::Reflect(_) | Knob::Transmit(_)) = self else { return None };
-        let present = session.scene();
-        let mut beyond = present.clone();
-        self.factors(&mut beyond, present, first + 1);
-        let change = Change::between(present, &beyond);
-        (!session.stale(&beyond, &change).is_empty()).then_some(first)
-    }
-}
-
-/// The search for the greatest step at which no term of the frontier lives.
-struct Search<'a> {
-    knob: Knob,
-    present: &'a Scene,
-    scene: Scene,
-    /// Nothing lives here.
-    first: u32,
-    /// The best limit so far.
-    best: u32,
-    at_best: FactorValues,
-}
-
-impl<'a> Search<'a> {
-    fn new(knob: Knob, present: &'a Scene, first: u32, last: u32) -> Search<'a> {
-        let mut scene = present.clone();
-        let at_best = knob.factors(&mut scene, present, last);
-        Search { knob, present, scene, first, best: last, at_best }
-    }
-
-    fn limit(mut self, session: &Session) -> u32 {
-        let nodes = session.transport.trie.nodes();
-        let mut factors = Vec::new();
-        for mut id in session.program.frontier() {
-            factors.clear();
-            let mut concerned = false;
-            while id != ROOT {
-                let node = &nodes[id as usize];
-                concerned |= self.knob.concerns(node.factor);
-                factors.push(node.factor);
-                id = node.parent;
-            }
-            if concerned {
-                factors.reverse();
-                self.lower(&factors);
-            }
-        }
-        self.best
-    }
-
-    /// Lowers the limit to the last step at which the given term does not live, if it is lower.
-    fn lower(&mut self, factors: &[Factor]) {
-        if !frontier_lives(factors, &self.at_best) {
-            return;
-        }
-        let (mut dead, mut alive) = (self.first, self.best);
-        while alive - dead > 1 {
-            let middle = dead + (alive - dead) / 2;
-            let values = self.knob.factors(&mut self.scene, self.present, middle);
-            if frontier_lives(factors, &values) {
-                alive = middle;
-            } else {
-                dead = middle;
-            }
-        }
-        self.best = dead;
-        self.at_best = self.knob.factors(&mut self.scene, self.present, dead);
     }
 }

@@ -1,9 +1,10 @@
 //! One pixel in detail: its ray trees, its terms, and each term's share of its light.
 
-use super::pilots::sample_map;
+use super::pilots::Pilots;
 use super::trace::TraceError;
 use crate::color::Rgb;
-use crate::film::layout::{LANES, Layout};
+use crate::film::layout::{LANES, Layout, TILE_BLOCKS};
+use crate::film::pixels::PixelSet;
 use crate::fold::{Folder, Names};
 use crate::forest::grow::Grower;
 use crate::forest::tree::{BEHIND, BLOCKED, Branch, Reader, TileTrees};
@@ -96,8 +97,12 @@ pub fn pixel(
 ) -> Result<Inspection, TraceError> {
     let layout = Layout::new(scene.picture.size);
     let place = layout.place(pixel);
-    let map = sample_map(scene, geometry, place.tile, progress)?;
-    let grower = Grower::new(scene, geometry).with_map(map.as_ref());
+    let mut lanes = [0; TILE_BLOCKS];
+    lanes[place.block] = layout.lanes(place.tile, place.block);
+    let mut block = PixelSet::new(layout);
+    block.add(place.tile, &lanes);
+    let pilots = Pilots::trace((scene, &block), geometry, None, 0, progress)?;
+    let grower = Grower::new(scene, geometry).with_map(pilots.map.as_deref());
     let mut trees = TileTrees::default();
     let at = (place.tile, place.block);
     let grown = grower.block(&mut grower.worker(), at, &mut trees, MOST_BYTES, progress);

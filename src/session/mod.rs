@@ -3,12 +3,15 @@
 pub mod cache;
 mod canvas;
 mod class;
+mod contrast;
 pub mod cost;
 pub mod inspect;
+mod knob;
 pub mod live;
 pub mod part;
 mod pilots;
 pub mod plan;
+mod redecide;
 pub mod regrow;
 pub mod still;
 pub mod trace;
@@ -215,11 +218,7 @@ impl Session {
         {
             return Work::Trace("there are so many lights or materials".into());
         }
-        let plan = self.plan(scene, change);
-        if self.map.is_some() && (plan.is_some() || self.redecides(scene, change)) {
-            return Work::Trace("adaptive sampling is decided again".into());
-        }
-        plan.map_or(Work::Shade, Work::Regrow)
+        self.plan(scene, change).map_or(Work::Shade, Work::Regrow)
     }
 
     /// Grows what a plan names, and folds it.
@@ -246,6 +245,7 @@ impl Session {
     ) -> Result<EditReport, TraceError> {
         let mut rays = RayCounts::default();
         patches.iter().for_each(|patch| rays += patch.rays);
+        rays += regrow.rays_to_decide();
         let (pixels, reason) = (regrow.plan.pixels(), Some(regrow.plan.reason.clone()));
         let class = match regrow.plan.casts || rays.total() > 0 {
             true => Class::Regrow,

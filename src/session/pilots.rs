@@ -1,106 +1,97 @@
-//! Adaptive sampling: every pixel's first samples are traced, and say which pixels need all.
+//! Adaptive sampling: pixels' first samples are traced, and say which pixels need more.
 
-use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::ThreadPool;
 
 use super::Session;
+use super::contrast::Palette;
 use super::trace::{LEAST_BLOCK_LIMIT, TraceError, claim};
-use crate::color::Rgb;
-use crate::film::layout::{LANES, Layout, TILE_BLOCKS};
-use crate::fold::{Folder, Names};
-use crate::forest::counts::{SampleMap, Signatures};
+use crate::film::layout::{LANES, Layout};
+use crate::film::pixels::{Lanes, PixelSet};
+use crate::fold::Folder;
+use crate::forest::Before;
+use crate::forest::counts::{Rule, SampleMap, Signatures};
 use crate::forest::grow::{Grower, RayCounts, Worker};
-use crate::forest::kept::KeptTrees;
+use crate::forest::kept::{KeptTrees, Recalls};
 use crate::forest::signature::{PILOTS, Signature};
 use crate::forest::thin::ThinPixels;
 use crate::forest::tree::TileTrees;
 use crate::geometry::Geometry;
 use crate::progress::Progress;
 use crate::scene::Scene;
-use crate::scene::change::Change;
-use crate::scene::factor::FactorValues;
-use crate::scene::model::Peak;
-use crate::scene::refine::Refine;
-use crate::shade::terms::{TermProgram, TermValues};
 
-/// What the first samples of some tiles' pixels gave; nothing where sampling is not adaptive.
+/// What the first samples of some pixels gave; nothing where sampling is not adaptive.
 #[derive(Default)]
 pub(super) struct Pilots {
     /// How many samples each pixel gets.
     pub(super) map: Option<Arc<SampleMap>>,
-    /// Per tile of the picture the pilots' trees, as far as the memory reached: tracing all samples
-    /// takes their answers.
-    trees: Vec<Option<Arc<KeptTrees>>>,
+    /// Per tile of the picture the trees of the samples traced so far, as far as the memory reached.
+    trees: Trees,
     /// Rays cast.
     pub(super) rays: RayCounts,
 }
 
-/// What the colours of samples are found with, if they are compared.
-struct Palette {
-    names: Names,
-    peaks: Vec<Option<Peak>>,
-    factors: FactorValues,
-    /// Of one sample: the grower lets a pilot stand for several.
-    weight: f32,
+/// Per tile its trees, if they are kept.
+type Trees = Vec<Option<Arc<KeptTrees>>>;
+
+/// A scene whose samples are traced to decide, and what is known of them.
+pub(super) struct Survey<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) geometry: &'a Geometry,
+    /// Trees that may answer, and with what they were grown; empty: there are none.
+    pub(super) old: &'a [Option<Arc<KeptTrees>>],
+    pub(super) keys: &'a [u16],
+    pub(super) before: &'a Before,
+    pub(super) bent: &'a [bool],
+    /// Bytes that the samples' trees may take: without them tracing casts their rays again.
+    pub(super) bytes: usize,
 }
 
-/// The pilots of one tile.
+/// What one round of samples gave, with all of the rounds before.
+struct Rounds {
+    trees: Vec<Mutex<Option<Arc<KeptTrees>>>>,
+    held: AtomicUsize,
+    found: Mutex<Vec<Found>>,
+}
+
+/// The samples of a block.
 struct Found {
-    tile: usize,
-    signatures: Vec<Signature>,
-    trees: KeptTrees,
+    at: (usize, usize),
+    signatures: [Signature; LANES],
 }
 
 impl Pilots {
-    /// Traces the pilots of some tiles and of the tiles around them, and decides. At most half of
-    /// `bytes` holds their trees.
+    /// Traces the first samples of some tiles and of the pixels around them, and decides. At most half of
+    /// `bytes` holds their trees. Without a pool it works on the thread that calls.
     pub(super) fn trace(
-        (scene, tiles): (&Scene, &[usize]),
+        (scene, wanted): (&Scene, &PixelSet),
         geometry: &Geometry,
-        pool: &ThreadPool,
+        pool: Option<&ThreadPool>,
         bytes: u64,
         progress: &Progress,
     ) -> Result<Pilots, TraceError> {
         if !scene.trace.is_adaptive() {
             return Ok(Pilots::default());
         }
-        let layout = Layout::new(scene.picture.size);
-        let around: Vec<usize> = with_neighbours(layout, tiles).into_iter().collect();
-        let map = SampleMap::of_pilots(layout);
-        let grower = Grower::new(scene, geometry).with_map(Some(&map));
-        let palette = Palette::of(scene, geometry);
-        let budget = usize::try_from(bytes / 2).unwrap_or(usize::MAX);
-        let (next, held) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        let signatures = Mutex::new(Signatures::new(layout));
-        let trees = Mutex::new(vec![None; layout.tiles()]);
-        let rays = pool.broadcast(|_| -> Result<RayCounts, TraceError> {
-            let mut worker = grower.worker();
-            while let Some(at) = claim(&next, around.len()) {
-                let found = grow((&grower, palette.as_ref()), &mut worker, around[at], progress)?;
-                signatures.lock().expect("no worker panicked").put(found.tile, &found.signatures);
-                let kept = found.trees.trimmed();
-                if held.fetch_add(kept.bytes(), Relaxed) + kept.bytes() <= budget {
-                    trees.lock().expect("no worker panicked")[found.tile] = Some(Arc::new(kept));
-                }
-            }
-            Ok(worker.rays)
-        });
-        let mut sum = RayCounts::default();
-        for rays in rays {
-            sum += rays?;
-        }
-        let signatures = signatures.into_inner().expect("no worker panicked");
-        let map = Some(Arc::new(decide(scene, &signatures, tiles)));
-        let trees = trees.into_inner().expect("no worker panicked");
-        Ok(Pilots { map, trees, rays: sum })
+        let keys: Vec<u16> = (0..).take(scene.lights.len()).collect();
+        let survey = Survey {
+            scene,
+            geometry,
+            old: &[],
+            keys: &keys,
+            before: &Before::of(scene, geometry),
+            bent: &[],
+            bytes: usize::try_from(bytes / 2).unwrap_or(usize::MAX),
+        };
+        let map = SampleMap::unknown(Layout::new(scene.picture.size), scene.trace.samples);
+        survey.decide(wanted, map, pool, progress)
     }
 
-    /// The trees of a tile's pilots, if they are there.
-    pub(super) fn tree(&self, tile: usize) -> Option<Arc<KeptTrees>> {
-        self.trees.get(tile).cloned().flatten()
+    /// The trees of a tile's first samples, if they are there.
+    pub(super) fn tree(&self, tile: usize) -> Option<&KeptTrees> {
+        self.trees.get(tile)?.as_deref()
     }
 }
 
@@ -122,147 +113,172 @@ impl Session {
             None => self.transport.samples,
         }
     }
-
-    /// Whether branches begin or cease to live, or lights are gone: then other pixels may need all
-    /// samples.
-    pub(super) fn redecides(&mut self, scene: &Scene, change: &Change) -> bool {
-        let values = |scene: &Scene| FactorValues::new(scene).with_lights_at(&self.names.lights);
-        let before = self.terms.lives(&self.program, &values(&self.scene));
-        let colors = self.scene.trace.refine == Refine::Contrast;
-        colors && (change.terms || !change.refold.is_empty())
-            || change.lights.len() != self.names.lights.len()
-            || change.terms
-                && before != self.terms.lives(&self.program, &self.factors_ahead(scene, change))
-    }
 }
 
-/// The numbers of samples of one tile's pixels, where sampling is adaptive.
-pub(super) fn sample_map(
-    scene: &Scene,
-    geometry: &Geometry,
-    tile: usize,
-    progress: &Progress,
-) -> Result<Option<SampleMap>, TraceError> {
-    if !scene.trace.is_adaptive() {
-        return Ok(None);
-    }
-    let layout = Layout::new(scene.picture.size);
-    let map = SampleMap::of_pilots(layout);
-    let grower = Grower::new(scene, geometry).with_map(Some(&map));
-    let palette = Palette::of(scene, geometry);
-    let (mut worker, mut signatures) = (grower.worker(), Signatures::new(layout));
-    for near in with_neighbours(layout, &[tile]) {
-        let found = grow((&grower, palette.as_ref()), &mut worker, near, progress)?;
-        signatures.put(near, &found.signatures);
-    }
-    Ok(Some(decide(scene, &signatures, &[tile])))
-}
-
-fn decide(scene: &Scene, signatures: &Signatures, tiles: &[usize]) -> SampleMap {
-    let thin = ThinPixels::of(scene);
-    let is_thin = |pixel| thin.contains(pixel);
-    signatures.decide(tiles, scene.trace.samples, scene.trace.adaptive, is_thin)
-}
-
-/// Grows the pilots of a tile.
-fn grow(
-    (grower, palette): (&Grower, Option<&Palette>),
-    worker: &mut Worker,
-    tile: usize,
-    progress: &Progress,
-) -> Result<Found, TraceError> {
-    let mut trees = KeptTrees::default();
-    trees.clear();
-    let mut signatures = Vec::with_capacity(TILE_BLOCKS * LANES);
-    let mut grown = TileTrees::default();
-    let mut folder = Folder::default();
-    folder.begin_tile();
-    for block in 0..TILE_BLOCKS {
-        grown.clear();
-        let at = (tile, block);
-        let stopped = grower.block(worker, at, &mut grown, LEAST_BLOCK_LIMIT, progress);
-        stopped.map_err(|stop| TraceError::of(stop, LEAST_BLOCK_LIMIT))?;
-        match palette {
-            None => signatures.extend(grower.signatures(&grown, at)),
-            Some(palette) => fold_samples(&mut folder, &grown, &grower.counts(at), &palette.names),
-        }
-        trees.push_counts(&grower.counts(at));
-        trees.push_grown(&grown, grower.keys());
-    }
-    if let Some(palette) = palette {
-        let counts = (0..TILE_BLOCKS).flat_map(|block| grower.counts((tile, block)));
-        signatures = palette.signatures(&mut folder, counts);
-    }
-    Ok(Found { tile, signatures, trees })
-}
-
-/// Folds a block so that every sample has a lane of its own, sixteen samples after another.
-fn fold_samples(folder: &mut Folder, grown: &TileTrees, counts: &[u32; LANES], names: &Names) {
-    let mut reader = grown.read(0);
-    let mut rest = counts.iter().sum::<u32>() as usize;
-    for _ in 0..PILOTS {
-        let here = rest.min(LANES);
-        rest -= here;
-        folder.block(&mut reader, &std::array::from_fn(|lane| u32::from(lane < here)), names);
-    }
-}
-
-impl Palette {
-    /// That of a scene; `None` if it does not compare colours.
-    fn of(scene: &Scene, geometry: &Geometry) -> Option<Palette> {
-        (scene.trace.refine == Refine::Contrast).then(|| Palette {
-            names: Names::new(geometry.materials(), scene.lights.len()),
-            peaks: scene.materials.iter().map(|m| Some(Peak::of(m))).collect(),
-            factors: FactorValues::new(scene),
-            weight: PILOTS as f32 / scene.trace.samples as f32,
-        })
-    }
-
-    /// The signatures of a tile's pixels, of which [`fold_samples`] folded the samples.
-    fn signatures(&self, folder: &mut Folder, counts: impl Iterator<Item = u32>) -> Vec<Signature> {
-        let folded = folder.finish_tile(self.weight, &self.peaks);
-        let mut terms = TermValues::default();
-        terms.evaluate(&TermProgram::new(folded.trie), &self.factors);
-        let value = |entry: usize| {
-            let [r, g, b, _] = terms.values[folded.tile.terms[entry] as usize];
-            Rgb([r, g, b])
+impl Survey<'_> {
+    /// Decides for the pixels of `wanted`; those of others stay in `map` as they are.
+    ///
+    /// All pixels begin with [`PILOTS`] samples. Those that need more and may do with fewer than all
+    /// are asked again, with twice as many, round after round.
+    pub(super) fn decide(
+        &self,
+        wanted: &PixelSet,
+        mut map: SampleMap,
+        pool: Option<&ThreadPool>,
+        progress: &Progress,
+    ) -> Result<Pilots, TraceError> {
+        let layout = Layout::new(self.scene.picture.size);
+        let rule = Rule { samples: self.scene.trace.samples, step: self.scene.trace.adaptive };
+        let (mut traced, mut rays) = (SampleMap::of_pilots(layout), RayCounts::default());
+        let rounds = Rounds {
+            trees: (0..layout.tiles()).map(|_| Mutex::default()).collect(),
+            held: AtomicUsize::new(0),
+            found: Mutex::default(),
         };
-        let mut colors = vec![Rgb::BLACK; TILE_BLOCKS * LANES * PILOTS as usize];
-        for (block, colors) in colors.chunks_exact_mut(LANES).enumerate() {
-            let rows = folded.tile.block(block);
-            for (&entry, plane) in rows.entries.iter().zip(rows.planes) {
-                let value = value(entry as usize);
-                colors.iter_mut().zip(plane.0).for_each(|(color, c)| *color = *color + value * c);
-            }
-            for single in rows.singles {
-                let color = &mut colors[single.lane()];
-                *color = *color + value(single.entry()) * single.coefficient;
-            }
+        rays += self.round((&wanted.widened(), &traced), &rounds, pool, progress)?;
+        let mut signatures = Signatures::new(layout);
+        for Found { at, signatures: found } in rounds.take_found() {
+            signatures.put(at, &found);
         }
-        // The samples of a block stand one after another, those of the next begin anew.
-        let mut blocks = colors.chunks_exact(LANES * PILOTS as usize);
-        let counts: Vec<u32> = counts.collect();
-        let mut signatures = Vec::with_capacity(counts.len());
-        for counts in counts.chunks_exact(LANES) {
-            let mut rest = blocks.next().expect("the samples of every block");
-            for &count in counts {
-                let (own, after) = rest.split_at(count as usize);
-                signatures.push(Signature::of_colors(own));
-                rest = after;
-            }
+        signatures.decide(wanted, rule, &ThinPixels::of(self.scene), &mut map);
+        let (mut count, mut open) = (rule.after(PILOTS), PixelSet::new(layout));
+        for place in wanted.places().filter(|&place| map.of(place) == count) {
+            open.insert(place);
         }
-        signatures
+        while count < rule.samples && !open.is_empty() {
+            open.places().for_each(|place| traced.set(place, count));
+            rays += self.round((&open, &traced), &rounds, pool, progress)?;
+            let asked = std::mem::replace(&mut open, PixelSet::new(layout));
+            for Found { at: (tile, block), signatures } in rounds.take_found() {
+                for place in asked.places_of(tile, block) {
+                    let verdict = rule.verdict(signatures[place.lane], count);
+                    map.set(place, verdict);
+                    if verdict == rule.after(count) {
+                        open.insert(place);
+                    }
+                }
+            }
+            count = rule.after(count);
+        }
+        let trees = rounds.trees.into_iter();
+        let trees = trees.map(|t| t.into_inner().unwrap_or_else(PoisonError::into_inner)).collect();
+        Ok(Pilots { map: Some(Arc::new(map)), trees, rays })
+    }
+
+    /// Traces the blocks that hold some pixels, which have as many samples as `map` says.
+    fn round(
+        &self,
+        (pixels, map): (&PixelSet, &SampleMap),
+        rounds: &Rounds,
+        pool: Option<&ThreadPool>,
+        progress: &Progress,
+    ) -> Result<RayCounts, TraceError> {
+        let Survey { scene, geometry, old: _, keys, before, bent, bytes: _ } = *self;
+        let grower = Grower::recalling(scene, geometry, keys.to_vec(), before)
+            .with_bent(bent.to_vec())
+            .with_map(Some(map));
+        let palette = Palette::of(scene, geometry);
+        let tiles: Vec<(usize, &Lanes)> = pixels.tiles().collect();
+        let next = AtomicUsize::new(0);
+        let work = || -> Result<RayCounts, TraceError> {
+            let mut worker = grower.worker();
+            let mut folder = Folder::default();
+            while let Some(at) = claim(&next, tiles.len()) {
+                let (tile, lanes) = tiles[at];
+                let asked = Asked { grower: &grower, palette: palette.as_ref(), tile, lanes };
+                asked.trace(self, rounds, (&mut worker, &mut folder), progress)?;
+            }
+            Ok(worker.rays)
+        };
+        let each = match pool {
+            Some(pool) => pool.broadcast(|_| work()),
+            None => vec![work()],
+        };
+        let mut sum = RayCounts::default();
+        for rays in each {
+            sum += rays?;
+        }
+        Ok(sum)
     }
 }
 
-/// Some tiles and those that touch them.
-fn with_neighbours(layout: Layout, tiles: &[usize]) -> BTreeSet<usize> {
-    let [across, down] = layout.grid();
-    let near = |tile: usize| {
-        let (column, row) = (tile % across, tile / across);
-        let columns = column.saturating_sub(1)..=(column + 1).min(across - 1);
-        let rows = row.saturating_sub(1)..=(row + 1).min(down - 1);
-        rows.flat_map(move |row| columns.clone().map(move |column| row * across + column))
-    };
-    tiles.iter().flat_map(|&tile| near(tile)).collect()
+impl Rounds {
+    fn tree(&self, tile: usize) -> Option<Arc<KeptTrees>> {
+        self.trees[tile].lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Keeps a tile's trees in place of those before, if all trees fit into `budget`.
+    fn keep(&self, tile: usize, trees: KeptTrees, budget: usize) {
+        let trees = trees.trimmed();
+        let mut slot = self.trees[tile].lock().unwrap_or_else(PoisonError::into_inner);
+        self.held.fetch_sub(slot.take().map_or(0, |before| before.bytes()), Relaxed);
+        let bytes = trees.bytes();
+        match self.held.fetch_add(bytes, Relaxed) + bytes <= budget {
+            true => *slot = Some(Arc::new(trees)),
+            false => drop(self.held.fetch_sub(bytes, Relaxed)),
+        }
+    }
+
+    fn take_found(&self) -> Vec<Found> {
+        std::mem::take(&mut self.found.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+/// A tile some of whose blocks are traced.
+struct Asked<'a> {
+    grower: &'a Grower<'a>,
+    palette: Option<&'a Palette>,
+    tile: usize,
+    lanes: &'a Lanes,
+}
+
+impl Asked<'_> {
+    fn trace(
+        &self,
+        survey: &Survey,
+        rounds: &Rounds,
+        (worker, folder): (&mut Worker, &mut Folder),
+        progress: &Progress,
+    ) -> Result<(), TraceError> {
+        let Asked { grower, palette, tile, lanes } = *self;
+        let first = rounds.tree(tile);
+        let old = survey.old.get(tile).and_then(Option::as_deref);
+        let (mut trees, mut grown) = (KeptTrees::default(), TileTrees::default());
+        trees.clear();
+        folder.begin_tile();
+        let (mut blocks, mut signatures) = (Vec::new(), Vec::new());
+        for (block, &lanes) in lanes.iter().enumerate() {
+            if lanes == 0 {
+                match &first {
+                    Some(first) => trees.push_block(first, block),
+                    None => trees.push_unknown(),
+                }
+                continue;
+            }
+            grown.clear();
+            let (at, counts) = ((tile, block), grower.counts((tile, block)));
+            let known = Recalls {
+                first: first.as_ref().map(|first| first.recall_current(block)),
+                rest: old.map(|old| old.recall(block)),
+            };
+            let stopped =
+                grower.block_again(worker, at, known, &mut grown, LEAST_BLOCK_LIMIT, progress);
+            stopped.map_err(|stop| TraceError::of(stop, LEAST_BLOCK_LIMIT))?;
+            match palette {
+                None => signatures.push(grower.signatures(&grown, at)),
+                Some(palette) => palette.fold(folder, &grown, &counts),
+            }
+            blocks.push((block, counts));
+            trees.push_counts(&counts);
+            trees.push_grown(&grown, grower.keys());
+        }
+        if let Some(palette) = palette {
+            signatures = palette.signatures(folder, &blocks);
+        }
+        let found = blocks.iter().zip(signatures);
+        let found = found.map(|((block, _), signatures)| Found { at: (tile, *block), signatures });
+        rounds.found.lock().unwrap_or_else(PoisonError::into_inner).extend(found);
+        rounds.keep(tile, trees, survey.bytes);
+        Ok(())
+    }
 }

@@ -1,11 +1,13 @@
 //! Which pixels an edit concerns: found in the matrix and the frontier, without a ray.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use super::Session;
 use crate::film::layout::{LANES, Layout, TILE_BLOCKS};
+use crate::film::pixels::PixelSet;
 use crate::fold::merge::Blocks;
 use crate::fold::transport::TransportTile;
 use crate::fold::trie::Trie;
@@ -28,6 +30,9 @@ pub struct Plan {
     /// The terms that get other coefficients, where the rest of the matrix stays: then no more of the
     /// kept trees is read than leads to them.
     pub scope: Option<Scope>,
+    /// The pixels whose first samples may see something else, where sampling is adaptive: from them
+    /// follows how many samples they and their neighbours get, all of which are among `tiles`.
+    pub unsettled: Option<Arc<PixelSet>>,
 }
 
 /// Pixels of a tile.
@@ -67,25 +72,32 @@ impl PlanTile {
 }
 
 /// What is looked for, by the ids of the picture's terms.
-struct Concern {
-    layout: Layout,
+pub(super) struct Concern {
+    pub(super) layout: Layout,
     /// Terms in front of which a coefficient stands.
-    terms: Vec<Sought>,
+    pub(super) terms: Vec<Sought>,
     /// The same, in tiles without highlight lists.
-    unlisted: Vec<Sought>,
+    pub(super) unlisted: Vec<Sought>,
     /// Terms at which branches or shadow rays end.
-    frontier: Vec<bool>,
+    pub(super) frontier: Vec<bool>,
 }
 
 /// How the pixels of a term are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Sought {
+pub(super) enum Sought {
     /// Not at all.
     No,
     /// By their coefficients.
     Lanes,
     /// With all of a block that has the term: a highlight's coefficient may be 0 for this exponent.
     Block,
+}
+
+impl Sought {
+    /// How the pixels of a term that ends in such a factor are found.
+    pub(super) fn of(kind: Kind) -> Sought {
+        if kind == Kind::Through { Sought::Block } else { Sought::Lanes }
+    }
 }
 
 impl Session {
@@ -138,15 +150,19 @@ impl Session {
                 reason.get_or_insert_with(|| self.comes_alive(id));
             }
         }
+        let unsettled = self.unsettled(scene, change, &concern, reason.is_some()).map(Arc::new);
+        let mut tiles = concern.find(self);
+        let mut scope = self.scope(change, nodes.is_empty(), &alive);
+        if let Some(unsettled) = &unsettled {
+            casts = true;
+            reason.get_or_insert_with(|| "adaptive sampling is decided again".into());
+            tiles = with_others(tiles, &unsettled.widened());
+            scope = None;
+        }
         let reason = reason?;
-        let scope = self.scope(change, nodes.is_empty(), &alive);
-        let tiles = self.transport.tiles.par_iter().enumerate();
-        let find =
-            |(tile, transport): (usize, &Arc<TransportTile>)| concern.of_tile(tile, transport);
-        let tiles: Vec<PlanTile> = self.pool.install(|| tiles.filter_map(find).collect());
         let is_released = |plan: &&PlanTile| self.forest.tiles[plan.tile].is_none();
         let released = tiles.iter().filter(is_released).count();
-        Some(Plan { reason, tiles, casts: casts || released > 0, released, scope })
+        Some(Plan { reason, tiles, casts: casts || released > 0, released, scope, unsettled })
     }
 
     /// The terms that get other coefficients, if all of the change is either branches that come alive
@@ -198,7 +214,7 @@ impl Session {
     }
 
     /// The value of every factor in the new scene, under the names of the matrix of today.
-    fn factors_after(&self, scene: &Scene, change: &Change) -> FactorValues {
+    pub(super) fn factors_after(&self, scene: &Scene, change: &Change) -> FactorValues {
         if change.keeps_materials() && self.iors.len() <= change.materials.len() {
             return FactorValues::new(scene);
         }
@@ -250,15 +266,39 @@ fn mark_nodes(trie: &Trie, materials: &[u16], change: &Change, concern: &mut Con
         let shadow = kind == Kind::Shadow && named();
         let above = concern.terms[node.parent as usize];
         concern.terms[id] = match surface || sky || shadow || above != Sought::No {
-            true if kind == Kind::Through => Sought::Block,
-            true => Sought::Lanes,
+            true => Sought::of(kind),
             false => Sought::No,
         };
         concern.frontier[id] |= shadow;
     }
 }
 
+/// The pixels of a plan and others.
+fn with_others(tiles: Vec<PlanTile>, others: &PixelSet) -> Vec<PlanTile> {
+    let mut tiles: BTreeMap<usize, PlanTile> = tiles.into_iter().map(|t| (t.tile, t)).collect();
+    for (tile, lanes) in others.tiles() {
+        let none = || PlanTile { tile, lanes: Box::new([0; TILE_BLOCKS]), rays: 0 };
+        let own = tiles.entry(tile).or_insert_with(none);
+        own.lanes.iter_mut().zip(lanes).for_each(|(own, lanes)| *own |= lanes);
+    }
+    tiles.into_values().collect()
+}
+
 impl Concern {
+    /// Whether nothing is looked for.
+    pub(super) fn is_nothing(&self) -> bool {
+        let Concern { layout: _, terms, unlisted, frontier } = self;
+        let mut sought = terms.iter().chain(unlisted);
+        sought.all(|&sought| sought == Sought::No) && !frontier.contains(&true)
+    }
+
+    /// The pixels in a session's matrix.
+    pub(super) fn find(&self, session: &Session) -> Vec<PlanTile> {
+        let tiles = session.transport.tiles.par_iter().enumerate();
+        let find = |(tile, part): (usize, &Arc<TransportTile>)| self.of_tile(tile, part);
+        session.pool.install(|| tiles.filter_map(find).collect())
+    }
+
     fn of_tile(&self, tile: usize, transport: &TransportTile) -> Option<PlanTile> {
         let mut lanes = Box::new([0u16; TILE_BLOCKS]);
         let mut rays = 0;

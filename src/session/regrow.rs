@@ -1,12 +1,13 @@
 //! Grows some pixels' trees again, from what is kept of them, and folds them into the matrix.
 
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
 use super::Session;
+use super::pilots::{Pilots, Survey};
 use super::plan::{Plan, PlanTile};
 use super::trace::{LEAST_BLOCK_LIMIT, TraceError, claim};
 use crate::film::Frame;
@@ -17,8 +18,9 @@ use crate::fold::transport::{Transport, TransportTile};
 use crate::fold::trie::{Marks, Trie};
 use crate::fold::{Folded, Folder, Names};
 use crate::forest::again::Again;
+use crate::forest::counts::SampleMap;
 use crate::forest::grow::{Grower, RayCounts, Worker};
-use crate::forest::kept::KeptTrees;
+use crate::forest::kept::{KeptTrees, Recalls};
 use crate::forest::scope::Scope;
 use crate::forest::tree::TileTrees;
 use crate::forest::{Before, Forest};
@@ -49,6 +51,11 @@ pub struct Regrow {
     before: Before,
     /// Per solid whether the kept trees were grown with another bump; empty: none was.
     bent: Vec<bool>,
+    /// The session's numbers of samples, where sampling is adaptive.
+    map: Option<Arc<SampleMap>>,
+    /// Those of the new scene, and the rays that it took to decide; empty as long as they are not
+    /// known, and if they stay.
+    decided: OnceLock<(Arc<SampleMap>, RayCounts)>,
     /// Per material of the new scene, of the trees when all is done.
     iors_after: Vec<f64>,
     /// The same of lobes.
@@ -107,6 +114,8 @@ impl Session {
             forest: self.forest.clone(),
             before: self.turns(),
             bent: self.bent(&scene),
+            map: self.map.clone(),
+            decided: OnceLock::new(),
             iors_after: self.iors_after(&scene, change),
             lobes_after: self.lobes_after(&scene, change),
             kept: AtomicUsize::new(self.kept_bytes() as usize),
@@ -196,6 +205,9 @@ impl Session {
         (self.keys, self.names) = (regrow.keys.clone(), regrow.names.clone());
         if change.shadows {
             self.keys_in_trees = self.keys.clone();
+        }
+        if let Some((map, _)) = regrow.decided.get() {
+            self.map = Some(map.clone());
         }
         self.iors = regrow.iors_after.clone();
         self.lobes = regrow.lobes_after.clone();
@@ -309,10 +321,13 @@ impl Regrow {
         done: &(dyn Fn(Patch) + Sync),
     ) -> Result<(), TraceError> {
         progress.begin(self.plan.tiles.len() as u64);
+        let pilots = self.decide(pool, progress)?;
+        let map = pilots.map.as_ref().or(self.map.as_ref());
         let base = self.base.lock().unwrap_or_else(PoisonError::into_inner).take();
         let grower =
             Grower::recalling(&self.scene, &self.geometry, self.keys.clone(), &self.before)
-                .with_bent(self.bent.clone());
+                .with_bent(self.bent.clone())
+                .with_map(map.map(|map| &**map));
         let next = AtomicUsize::new(0);
         let results = pool.broadcast(|_| -> Result<(), TraceError> {
             let mut scratch = Scratch {
@@ -322,8 +337,9 @@ impl Regrow {
                 again: Again::default(),
             };
             while let Some(at) = claim(&next, self.plan.tiles.len()) {
-                let (plan, base) = (&self.plan.tiles[at], base.as_ref());
-                done(self.tile((plan, base), &grower, &mut scratch, progress)?);
+                let plan = &self.plan.tiles[at];
+                let known = (pilots.tree(plan.tile), base.as_ref());
+                done(self.tile((plan, known), &grower, &mut scratch, progress)?);
                 progress.step();
             }
             Ok(())
@@ -331,9 +347,36 @@ impl Regrow {
         results.into_iter().collect()
     }
 
+    /// Decides again how many samples pixels get, as far as the plan asks for it.
+    fn decide(&self, pool: &ThreadPool, progress: &Progress) -> Result<Pilots, TraceError> {
+        let (Some(unsettled), Some(map)) = (&self.plan.unsettled, &self.map) else {
+            return Ok(Pilots::default());
+        };
+        let survey = Survey {
+            scene: &self.scene,
+            geometry: &self.geometry,
+            old: &self.forest.tiles,
+            keys: &self.keys,
+            before: &self.before,
+            bent: &self.bent,
+            bytes: self.budget / 4,
+        };
+        let pilots = survey.decide(&unsettled.widened(), (**map).clone(), Some(pool), progress)?;
+        if let Some(map) = &pilots.map {
+            // A plan is carried out once.
+            let _ = self.decided.set((map.clone(), pilots.rays));
+        }
+        Ok(pilots)
+    }
+
+    /// Rays cast to decide how many samples pixels get.
+    pub(super) fn rays_to_decide(&self) -> RayCounts {
+        self.decided.get().map_or(RayCounts::default(), |(_, rays)| *rays)
+    }
+
     fn tile(
         &self,
-        (plan, base): (&PlanTile, Option<&Base>),
+        (plan, (first, base)): (&PlanTile, (Option<&KeptTrees>, Option<&Base>)),
         grower: &Grower,
         scratch: &mut Scratch,
         progress: &Progress,
@@ -341,7 +384,7 @@ impl Regrow {
         let old = self.forest.tiles[plan.tile].as_deref();
         let (trees, folded, rays) = match self.part_of(plan.tile, base) {
             Some(part) => self.grow_part(plan, &part, grower, scratch, progress)?,
-            None => self.grow_all(plan, old, grower, scratch, progress)?,
+            None => self.grow_all(plan, (first, old), grower, scratch, progress)?,
         };
         // They take the place of the old ones, which go when all is done.
         let replaced = old.map_or(0, KeptTrees::bytes);
@@ -358,11 +401,11 @@ impl Regrow {
         })
     }
 
-    /// Grows and folds a tile's blocks.
+    /// Grows and folds a tile's blocks, of which the trees `first`, of the new scene, and `old` know.
     fn grow_all<'a>(
         &self,
         plan: &PlanTile,
-        old: Option<&KeptTrees>,
+        (first, old): (Option<&KeptTrees>, Option<&KeptTrees>),
         grower: &Grower,
         scratch: &'a mut Scratch,
         progress: &Progress,
@@ -380,10 +423,17 @@ impl Regrow {
             }
             grown.clear();
             let at = (plan.tile, block);
-            let kept = old.map(|old| old.recall(block));
+            let kept = Recalls {
+                first: first.map(|first| first.recall_current(block)),
+                rest: old.map(|old| old.recall(block)),
+            };
             let stopped = grower.block_again(worker, at, kept, grown, self.most(), progress);
             stopped.map_err(|stop| TraceError::of(stop, self.budget))?;
-            folder.block(&mut grown.read(0), &grower.counts(at), &self.names);
+            let counts = grower.counts(at);
+            folder.block(&mut grown.read(0), &counts, &self.names);
+            if grower.is_adaptive() {
+                trees.push_counts(&counts);
+            }
             trees.push_grown(grown, grower.keys());
         }
         let folded = folder.finish_tile(1.0 / self.samples() as f32, &self.peaks());

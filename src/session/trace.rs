@@ -10,13 +10,14 @@ use rayon::ThreadPool;
 
 use super::pilots::Pilots;
 use crate::film::layout::{Layout, TILE_BLOCKS};
+use crate::film::pixels::PixelSet;
 use crate::fold::transport::{Highlights, Transport, TransportTile};
 use crate::fold::trie::Trie;
 use crate::fold::{Folder, Names};
 use crate::forest::Forest;
 use crate::forest::counts::SampleMap;
 use crate::forest::grow::{Grower, MOST_CROSSED, RayCounts, Stop, Worker};
-use crate::forest::kept::KeptTrees;
+use crate::forest::kept::{KeptTrees, Recalls};
 use crate::forest::sink::Discard;
 use crate::forest::tree::TileTrees;
 use crate::geometry::Geometry;
@@ -212,7 +213,9 @@ pub(super) fn trace_tiles(
 ) -> Result<Traced, TraceError> {
     let start = Instant::now();
     let threads = pool.current_num_threads();
-    let pilots = Pilots::trace((scene, &tiles), geometry, pool, keep.bytes, progress)?;
+    let wanted = PixelSet::of_tiles(Layout::new(scene.picture.size), tiles.iter().copied());
+    let asked = (scene, &wanted);
+    let pilots = Pilots::trace(asked, geometry, Some(pool), keep.bytes, progress)?;
     let job = Job::new((scene, tiles), (geometry, &pilots), threads, keep, reuse, progress);
     let outcomes = pool.broadcast(|_| job.work());
     let mut report = TraceReport { rays: pilots.rays, ..TraceReport::default() };
@@ -387,7 +390,7 @@ impl<'a> Job<'a> {
     /// Grows and folds the blocks of a tile; whether `trees` holds all of them in the end.
     fn tile(
         &self,
-        (tile, pilots): (usize, Option<Arc<KeptTrees>>),
+        (tile, pilots): (usize, Option<&KeptTrees>),
         worker: &mut Worker,
         folder: &mut Folder,
         trees: &mut KeptTrees,
@@ -401,7 +404,8 @@ impl<'a> Job<'a> {
             grown.clear();
             let at = (tile, block);
             let most = self.tile_limit.max(LEAST_BLOCK_LIMIT);
-            let known = pilots.as_ref().map(|pilots| pilots.recall(block));
+            let first = pilots.map(|pilots| pilots.recall_current(block));
+            let known = Recalls { first, rest: None };
             let stopped = self.grower.block_again(worker, at, known, grown, most, self.progress);
             stopped.map_err(|stop| TraceError::of(stop, self.budget))?;
             outcome.nodes += grown.nodes.len() as u64;

@@ -130,13 +130,14 @@ impl TermValues {
         program.frontier.iter().filter(lives).map(|f| f.id)
     }
 
-    /// Per step of the program whether what it stands for lives: branches of the seen path by the rule of
-    /// liveness, solids in front of lights by what they let through.
-    pub fn lives(&mut self, program: &TermProgram, factors: &FactorValues) -> Vec<bool> {
+    /// Per trie node whether it ends in a path factor whose branch lives. Values are left alone.
+    pub fn living(&mut self, program: &TermProgram, factors: &FactorValues) -> Vec<bool> {
         self.follow_paths(program, factors);
-        let paths = program.paths.iter().map(|step| self.weights[step.id as usize].depth != DEAD);
-        let solids = program.factors.iter().filter(|factor| factor.kind() == Kind::Shadow);
-        paths.chain(solids.map(|&factor| !factors.value(factor).is_black())).collect()
+        let mut living = vec![false; program.terms];
+        for &Step { id, .. } in &program.paths {
+            living[id as usize] = self.weights[id as usize].depth != DEAD;
+        }
+        living
     }
 
     fn follow_paths(&mut self, program: &TermProgram, factors: &FactorValues) {

@@ -22,6 +22,9 @@ pub(super) fn text(cost: Option<Cost>) -> String {
         Some(Cost::InstantDownTo(x, _) | Cost::RereadBelow(x, _)) => {
             format!("instant ≥ {}", rounded(x, f64::ceil))
         }
+        Some(Cost::InstantWithin([low, high], _)) => {
+            format!("instant {}…{}", rounded(low, f64::ceil), rounded(high, f64::floor))
+        }
         Some(Cost::InstantAboveZero(_)) => "instant > 0".into(),
         Some(Cost::Refold) => "refold".into(),
         Some(Cost::Reread(pixels)) => format!("rereads {}", share(pixels)),
@@ -46,6 +49,15 @@ pub(super) fn explanation(cost: Option<Cost>) -> String {
             "Instant down to {}; below that branches of the ray trees come alive that were not \
              traced: traces {} of the pixels, and with lower values perhaps more{}",
             rounded(x, f64::ceil),
+            share(pixels),
+            rays(pixels)
+        ),
+        Some(Cost::InstantWithin([low, high], pixels)) => format!(
+            "Instant from {} to {}; beyond, branches of the ray trees begin or cease to live: adaptive \
+             sampling is decided again for {} of the pixels, which traces rays where more samples are \
+             needed{}",
+            rounded(low, f64::ceil),
+            rounded(high, f64::floor),
             share(pixels),
             rays(pixels)
         ),
@@ -88,13 +100,14 @@ fn rays(pixels: Pixels) -> String {
 }
 
 /// Per cent of the picture, never 0 for some and never 100 for not all.
-fn share(Pixels { count, of, .. }: Pixels) -> String {
+fn share(Pixels { count, of, at_most, .. }: Pixels) -> String {
     let percent = count as f64 * 100.0 / of as f64;
+    let most = if at_most { "≤ " } else { "" };
     match () {
         () if count == 0 => "0 %".into(),
         () if percent < 1.0 => "< 1 %".into(),
-        () if count < of => format!("{} %", percent.round().min(99.0)),
-        () => "100 %".into(),
+        () if count < of => format!("{most}{} %", percent.round().min(99.0)),
+        () => format!("{most}100 %"),
     }
 }
 
@@ -118,6 +131,7 @@ fn price(cost: Option<Cost>) -> Price {
         None => Price::Unknown,
         Some(Cost::Instant) => Price::Free,
         Some(Cost::InstantUpTo(..) | Cost::InstantDownTo(..)) => Price::Mixed,
+        Some(Cost::InstantWithin(..)) => Price::Mixed,
         Some(Cost::RereadBelow(..) | Cost::InstantAboveZero(_)) => Price::Mixed,
         Some(Cost::Refold | Cost::Reread(_)) => Price::Mixed,
         Some(Cost::Regrow(_) | Cost::TraceAll) => Price::Dear,
@@ -158,12 +172,16 @@ pub(super) fn badge_ui(ui: &mut Ui, name: &str, cost: Option<Cost>, width: f32) 
 mod tests {
     use super::*;
 
-    const SOME: Pixels = Pixels { count: 3, of: 16, rays: 0, released: false };
+    const SOME: Pixels = Pixels { count: 3, of: 16, rays: 0, released: false, at_most: false };
 
     #[test]
     fn a_threshold_is_rounded_to_the_safe_side() {
         assert_eq!(text(Some(Cost::InstantUpTo(0.447_91, SOME))), "instant ≤ 0.447");
         assert_eq!(text(Some(Cost::InstantDownTo(0.001_234_5, SOME))), "instant ≥ 0.00124");
+        assert_eq!(
+            text(Some(Cost::InstantWithin([0.158_2, 0.447_9], SOME))),
+            "instant 0.159…0.447"
+        );
         assert_eq!(text(Some(Cost::InstantUpTo(0.0, SOME))), "instant ≤ 0");
         assert_eq!(text(Some(Cost::InstantUpTo(10.0, SOME))), "instant ≤ 10");
         assert_eq!(text(Some(Cost::InstantUpTo(120.0, SOME))), "instant ≤ 120");
@@ -176,5 +194,7 @@ mod tests {
             [0, 1, 9, 10, 126, 999, 1000].map(of),
             ["0 %", "< 1 %", "< 1 %", "1 %", "13 %", "99 %", "100 %"]
         );
+        let most = Pixels { count: 126, of: 1000, at_most: true, ..SOME };
+        assert_eq!(text(Some(Cost::Regrow(most))), "traces ≤ 13 %");
     }
 }

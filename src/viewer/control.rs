@@ -182,7 +182,7 @@ fn slider_ui(ui: &mut Ui, row: &Row<'_>, name: &str, x: &mut f64, range: Range) 
     let slider = slider.logarithmic(logarithmic).smallest_positive(1.0).trailing_fill(true);
     let response = ui.add(slider).accessible_name(name);
     if !logarithmic {
-        threshold_ui(ui, &response, row.cost, low, high);
+        thresholds_ui(ui, &response, row.cost, low, high);
     }
     let changed = response.changed();
     explained(response, row, Some(range));
@@ -192,19 +192,22 @@ fn slider_ui(ui: &mut Ui, row: &Row<'_>, name: &str, x: &mut f64, range: Range) 
     changed
 }
 
-/// A tick on the slider where an edit stops being instant.
-fn threshold_ui(ui: &Ui, slider: &Response, cost: Option<Cost>, low: f64, high: f64) {
-    use Cost::{InstantDownTo, InstantUpTo, RereadBelow};
-    let Some(InstantUpTo(x, _) | InstantDownTo(x, _) | RereadBelow(x, _)) = cost else { return };
-    if !(low..=high).contains(&x) || high <= low {
-        return;
+/// Ticks on the slider where an edit stops being instant.
+fn thresholds_ui(ui: &Ui, slider: &Response, cost: Option<Cost>, low: f64, high: f64) {
+    use Cost::{InstantDownTo, InstantUpTo, InstantWithin, RereadBelow};
+    let limits = match cost {
+        Some(InstantUpTo(x, _) | InstantDownTo(x, _) | RereadBelow(x, _)) => vec![x],
+        Some(InstantWithin(ends, _)) => ends.to_vec(),
+        _ => return,
+    };
+    for x in limits.into_iter().filter(|x| (low..=high).contains(x) && high > low) {
+        let rect = slider.rect.shrink2(vec2(slider.rect.height() / 2.5, 0.0));
+        let at = rect.left() + rect.width() * ((x - low) / (high - low)) as f32;
+        let stroke = Stroke::new(1.5, Color32::from_rgb(200, 140, 30));
+        // Below the rail, so that the handle does not hide it.
+        let line = [pos2(at, rect.center().y + 4.0), pos2(at, rect.bottom())];
+        ui.painter().line_segment(line, stroke);
     }
-    let rect = slider.rect.shrink2(vec2(slider.rect.height() / 2.5, 0.0));
-    let at = rect.left() + rect.width() * ((x - low) / (high - low)) as f32;
-    let stroke = Stroke::new(1.5, Color32::from_rgb(200, 140, 30));
-    // Below the rail, so that the handle does not hide it.
-    let line = [pos2(at, rect.center().y + 4.0), pos2(at, rect.bottom())];
-    ui.painter().line_segment(line, stroke);
 }
 
 /// A number field: drag it, or click and type.

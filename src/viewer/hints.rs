@@ -38,7 +38,7 @@ pub(super) fn about(key: &str) -> &'static str {
              colours, decided again after every edit"
         }
         "adaptive" => {
-            "0: every pixel gets all samples; above: only pixels whose first samples differ more than this"
+            "0: every pixel gets all samples; above: pixels whose samples differ less than this get fewer"
         }
         "depth" => "Longest chain of reflections and refractions that is followed",
         "cutoff" => "Branches that weigh less than this are not followed",

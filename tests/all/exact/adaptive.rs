@@ -3,11 +3,16 @@
 use rayforest::film::Film;
 use rayforest::geometry::Geometry;
 use rayforest::progress::Progress;
+use rayforest::scene::change::Change;
+use rayforest::scene::path::parameters;
 use rayforest::scene::{Scene, read};
+use rayforest::session::Class::{self, Regrow, Reshade, Retrace};
 use rayforest::session::still::Still;
-use rayforest::session::{Class, Options, Session, cache};
+use rayforest::session::{Options, Session, cache};
 use rayon::ThreadPoolBuilder;
 
+use super::classes::row_of;
+use super::table::{self, Row, SCENE, row};
 use super::{PLENTY, assert_same_picture, film_difference, open, set, shipped};
 
 /// A shipped scene with adaptive sampling.
@@ -41,30 +46,51 @@ fn threads_memory_and_parts_change_no_bit() {
     }
 }
 
+/// Makes an edit and holds class, picture and sample map to those of a fresh trace; how many rays it
+/// cast, and how many a trace casts.
+fn edit(session: &mut Session, scene: &Scene, class: Class, what: &str) -> [u64; 2] {
+    assert_eq!(session.class_of(scene), class, "{what}: beforehand");
+    let report = session.edit(scene.clone(), &Progress::default()).unwrap();
+    assert_eq!(report.class, class, "{what}: {:?}", report.reason);
+    let fresh = open(scene, 2);
+    assert_same_picture(session, &fresh, what);
+    assert!(session.sample_map() == fresh.sample_map(), "{what}: numbers of samples");
+    session.transport().validate();
+    [report.rays.total(), fresh.trace_report().rays.total()]
+}
+
 #[test]
 fn every_edit_gives_what_a_fresh_trace_gives() {
     let mut session = open(&adaptive("glass", [96, 64]), 2);
+    let first = refined_share(&session, 16);
+    let mut least = first;
     for (path, value, class) in [
         ("materials.ruby.color", "[0.9, 0.4, 0.4]", Class::Reshade),
         ("materials.ruby.shininess", "33", Class::Refold),
-        ("materials.ruby.reflect", "0", Class::Retrace),
-        ("materials.ruby.reflect", "0.3", Class::Retrace),
-        ("materials.ruby.transmit", "0", Class::Retrace),
-        ("materials.ruby.transmit", "0.8", Class::Retrace),
+        ("materials.ruby.reflect", "0", Class::Regrow),
+        ("materials.ruby.reflect", "0.3", Class::Regrow),
+        ("materials.ruby.reflect", "0.29", Class::Reshade),
+        ("materials.ruby.transmit", "0", Class::Regrow),
+        ("materials.ruby.transmit", "0.8", Class::Regrow),
+        ("materials.ruby.ior", "1.3", Class::Regrow),
         ("lights.0.on", "false", Class::Reshade),
-        ("trace.depth", "2", Class::Retrace),
+        ("lights.0.point", "[1, -2, 6]", Class::Regrow),
+        ("trace.depth", "4", Class::Reshade),
+        ("trace.depth", "1", Class::Regrow),
+        ("trace.depth", "5", Class::Regrow),
+        ("trace.depth", "6", Class::Regrow),
     ] {
         let path = path.replace("lights.0", &format!("lights.{}", session.scene().lights[0].name));
         let mut scene = session.scene().clone();
         set(&mut scene, &path, value);
-        let report = session.edit(scene.clone(), &Progress::default()).unwrap();
-        assert_eq!(report.class, class, "{path} = {value}");
-        assert_same_picture(&session, &open(&scene, 2), &format!("{path} = {value}"));
+        let [rays, all] = edit(&mut session, &scene, class, &format!("{path} = {value}"));
+        assert!(rays < all, "{path} = {value}: {rays} of {all} rays");
+        least = refined_share(&session, 16).min(least);
     }
+    assert!(least < first, "without branches fewer pixels have all samples: {first}, {least}");
     let mut scene = session.scene().clone();
     scene.lights.pop();
-    session.edit(scene.clone(), &Progress::default()).unwrap();
-    assert_same_picture(&session, &open(&scene, 2), "a light less");
+    edit(&mut session, &scene, Class::Regrow, "a light less");
 }
 
 #[test]
@@ -74,19 +100,106 @@ fn by_contrast_every_edit_decides_again() {
     let mut session = open(&scene, 2);
     let before = refined_share(&session, 16);
     for (path, value, class) in [
-        ("materials.tiles.texture.checker.a", "[0.9, 0.9, 0.1]", Class::Retrace),
-        ("materials.tiles.shininess", "40", Class::Retrace),
+        ("materials.tiles.texture.checker.a", "[0.9, 0.9, 0.1]", Class::Regrow),
+        ("materials.tiles.shininess", "40", Class::Regrow),
         ("picture.exposure", "1", Class::Reshade),
-        ("materials.tiles.kloc", "0", Class::Retrace),
+        ("materials.tiles.kloc", "0", Class::Regrow),
+        ("materials.tiles.kloc", "0.8", Class::Regrow),
+        ("materials.tiles.reflect", "0.2", Class::Regrow),
+        ("materials.tiles.kloc", "0", Class::Regrow),
     ] {
         let mut scene = session.scene().clone();
         set(&mut scene, path, value);
-        let report = session.edit(scene.clone(), &Progress::default()).unwrap();
-        assert_eq!(report.class, class, "{path} = {value}");
-        assert_same_picture(&session, &open(&scene, 1), &format!("{path} = {value}"));
+        edit(&mut session, &scene, class, &format!("{path} = {value}"));
     }
     let after = refined_share(&session, 16);
     assert!(after < before, "a black floor has no contrast: {before} {after}");
+}
+
+/// What costs something else than where every pixel has all samples.
+const ROWS: &[Row] = &[
+    row("trace.adaptive", &[("0.1", Retrace), ("0", Retrace), ("@", Retrace)]),
+    row("trace.refine", &[("contrast", Retrace), ("trees", Retrace), ("@", Class::None)]),
+    // What is seen by more than two branches decides nothing.
+    row(
+        "trace.depth",
+        &[
+            ("3", Reshade),
+            ("4", Reshade),
+            ("2", Regrow),
+            ("4", Regrow),
+            ("0", Regrow),
+            ("5", Regrow),
+        ],
+    ),
+    row("materials.plain.reflect", BECOMES_MIRROR),
+    row("materials.tiles.reflect", BECOMES_MIRROR),
+    row("materials.lamp.reflect", BECOMES_MIRROR),
+    row("materials.plain.transmit", LETS_LIGHT_THROUGH),
+    row("materials.mirror.transmit", LETS_LIGHT_THROUGH),
+    row("materials.mirror.reflect", &[("0.49", Reshade), ("0", Regrow), ("@", Regrow)]),
+    row("materials.glass.transmit", &[("0.79", Reshade), ("0", Regrow), ("@", Regrow)]),
+];
+const BECOMES_MIRROR: &[(&str, Class)] = &[
+    ("0.004", Reshade),
+    ("0.01", Regrow),
+    ("0.009", Regrow),
+    ("0.5", Regrow),
+    ("0.49", Reshade),
+    ("0", Regrow),
+    ("[0, 0.004, 0]", Reshade),
+    ("@", Reshade),
+];
+const LETS_LIGHT_THROUGH: &[(&str, Class)] =
+    &[("0.004", Regrow), ("0", Regrow), ("0.5", Regrow), ("0", Regrow), ("@", Class::None)];
+
+/// What a step of a table costs where sampling is adaptive, if one can tell: reading trees again may
+/// give some pixel more samples.
+fn cost_here(path: &str, change: &Change, class: Class) -> Option<Class> {
+    let key = path.rsplit('.').next().unwrap_or_default();
+    let wakes = ["reflect", "transmit", "filter", "depth", "cutoff"].contains(&key);
+    let listed = ROWS.iter().any(|row| row.path == path);
+    match class {
+        Class::Refold if change.moves_rays.is_some() => Some(Regrow),
+        class => (listed || !wakes).then_some(class),
+    }
+}
+
+#[test]
+fn every_parameter_costs_what_the_table_says() {
+    let mut scene = read::text(SCENE, std::path::Path::new("all-kinds.toml")).unwrap();
+    set(&mut scene, "trace.samples", "9");
+    set(&mut scene, "trace.adaptive", "0.2");
+    let first = open(&scene, 2);
+    let counts = first.sample_map().unwrap().to_list();
+    let fewer = counts.iter().filter(|count| **count < 9).count();
+    assert!(fewer > 100 && counts.contains(&8) && counts.contains(&9));
+    let mut known = 0;
+    for parameter in parameters(&scene) {
+        let path = parameter.path.as_str();
+        let row = row_of(ROWS, path).or_else(|_| row_of(table::ROWS, path)).unwrap();
+        let mut session = open(&scene, 2);
+        for (value, class) in row.steps {
+            let value = if *value == "@" { parameter.value.as_str() } else { value };
+            let what = format!("{path} = {value}");
+            let mut edited = session.scene().clone();
+            set(&mut edited, path, value);
+            let change = Change::between(session.scene(), &edited);
+            let class = match *session.scene() == edited {
+                true => Some(Class::None),
+                false => cost_here(path, &change, *class),
+            };
+            known += usize::from(class.is_some());
+            let class = class.unwrap_or_else(|| session.class_of(&edited));
+            let [rays, all] = edit(&mut session, &edited, class, &what);
+            assert!(
+                if class == Retrace { rays == all } else { rays < all },
+                "{what}: {rays}, {all}"
+            );
+            assert!(class >= Regrow || rays == 0, "{what}");
+        }
+    }
+    assert!(known > 200, "{known}");
 }
 
 #[test]

@@ -9,7 +9,7 @@ use rayforest::session::{Class, Options, Session};
 
 use super::{SHIPPED, open, set, shipped};
 
-const NONE: Pixels = Pixels { count: 0, of: 1, rays: 0, released: false };
+const NONE: Pixels = Pixels { count: 0, of: 1, rays: 0, released: false, at_most: false };
 
 /// The numbers of a TOML value.
 fn numbers(value: &str) -> Vec<f64> {
@@ -20,17 +20,26 @@ fn numbers(value: &str) -> Vec<f64> {
 /// The scene with every channel of a parameter raised to at least `value`, or the number itself
 /// set, if it is one that counts or bounds.
 fn raised(scene: &Scene, parameter: &Parameter, value: f64) -> Scene {
-    let mut raised = scene.clone();
+    moved(scene, parameter, value, f64::max)
+}
+
+/// The same, channels lowered to at most `value`.
+fn lowered(scene: &Scene, parameter: &Parameter, value: f64) -> Scene {
+    moved(scene, parameter, value, f64::min)
+}
+
+fn moved(scene: &Scene, parameter: &Parameter, value: f64, to: fn(f64, f64) -> f64) -> Scene {
+    let mut moved = scene.clone();
     let text = match parameter.kind {
         Kind::Coefficient => {
             let channels = numbers(&parameter.value).into_iter().cycle().take(3);
-            format!("{:?}", channels.map(|c| c.max(value)).collect::<Vec<_>>())
+            format!("{:?}", channels.map(|c| to(c, value)).collect::<Vec<_>>())
         }
         Kind::Whole => format!("{}", value as u32),
         _ => format!("{value:?}"),
     };
-    set(&mut raised, &parameter.path, &text);
-    raised
+    set(&mut moved, &parameter.path, &text);
+    moved
 }
 
 /// Values on both sides of a limit: those that need no ray, and those that do.
@@ -41,7 +50,8 @@ fn around(parameter: &Parameter, limit: f64, up: bool) -> (f64, f64) {
     let single = limit as f32;
     assert_eq!(f64::from(single), limit, "{}: a limit between two values", parameter.path);
     let beyond = match (parameter.kind, up) {
-        (Kind::Whole, _) => limit + 1.0,
+        (Kind::Whole, true) => limit + 1.0,
+        (Kind::Whole, false) => limit - 1.0,
         (_, true) => f64::from(single.next_up()),
         (_, false) => f64::from(single.next_down()),
     };
@@ -84,14 +94,26 @@ fn lie(session: &mut Session, parameter: &Parameter, cost: Cost) -> Option<Strin
         | Cost::RereadBelow(limit, _) => {
             let up = matches!(cost, Cost::InstantUpTo(..));
             let (within, beyond) = around(parameter, limit, up);
+            let lowers = !up && parameter.kind != Kind::Number;
+            let raised = if lowers { lowered } else { raised };
             let half = match (up, reread) {
                 (true, _) => within / 2.0,
                 (false, true) => within * 2.0,
+                (false, false) if parameter.kind == Kind::Whole => within,
                 (false, false) => within.midpoint(1.0),
             };
             claim(&raised(&scene, parameter, within), &instant)
                 .or_else(|| claim(&raised(&scene, parameter, beyond), &traced))
                 .or_else(|| claim(&raised(&scene, parameter, half), &instant))
+        }
+        Cost::InstantWithin([low, high], _) => {
+            let [below, above] = [(low, false), (high, true)].map(|(limit, up)| {
+                let (within, beyond) = around(parameter, limit, up);
+                let to = if up { raised } else { lowered };
+                claim(&to(&scene, parameter, within), &instant)
+                    .or_else(|| claim(&to(&scene, parameter, beyond), &traced))
+            });
+            below.or(above)
         }
         Cost::Instant => {
             let numeric = matches!(parameter.kind, Kind::Coefficient | Kind::Number);
@@ -122,8 +144,8 @@ fn lie(session: &mut Session, parameter: &Parameter, cost: Cost) -> Option<Strin
 }
 
 /// Holds the costs of all parameters; how many of each kind there are.
-fn hold(session: &mut Session, what: &str) -> [usize; 9] {
-    let mut kinds = [0; 9];
+fn hold(session: &mut Session, what: &str) -> [usize; 10] {
+    let mut kinds = [0; 10];
     for parameter in parameters(&session.scene().clone()) {
         let path = &parameter.path;
         let cost = cost(session, path).unwrap_or_else(|| panic!("{what}: {path} has no cost"));
@@ -140,6 +162,7 @@ fn hold(session: &mut Session, what: &str) -> [usize; 9] {
             Cost::InstantAboveZero(_) => 8,
             Cost::Regrow(_) => 5,
             Cost::TraceAll => 6,
+            Cost::InstantWithin(..) => 9,
         }] += 1;
     }
     kinds
@@ -147,14 +170,41 @@ fn hold(session: &mut Session, what: &str) -> [usize; 9] {
 
 #[test]
 fn every_badge_of_every_scene_is_the_class_of_the_edit() {
-    let mut all = [0; 9];
+    let mut all = [0; 10];
     for name in SHIPPED {
         let mut session = open(&shipped(name, [48, 32], 2), 2);
         for (sum, kind) in all.iter_mut().zip(hold(&mut session, name)) {
             *sum += kind;
         }
     }
-    assert!(all.iter().all(|&kind| kind >= 3), "kinds of costs met: {all:?}");
+    assert!(all[..9].iter().all(|&kind| kind >= 3), "kinds of costs met: {all:?}");
+    assert_eq!(all[9], 0, "what dies is no matter without adaptive sampling");
+}
+
+#[test]
+fn badges_hold_with_adaptive_sampling() {
+    let mut all = [0; 10];
+    for name in ["whitted", "glass", "mesh", "gallery"] {
+        let mut scene = shipped(name, [48, 32], 12);
+        set(&mut scene, "trace.adaptive", "0.1");
+        let mut session = open(&scene, 2);
+        assert!(session.is_adaptive());
+        for (sum, kind) in all.iter_mut().zip(hold(&mut session, name)) {
+            *sum += kind;
+        }
+        // Sliders that were moved to both sides.
+        for (path, value) in [("trace.depth", "2"), ("trace.cutoff", "0.03")] {
+            set(&mut scene, path, value);
+            session.edit(scene.clone(), &Progress::default()).unwrap();
+            hold(&mut session, path);
+        }
+    }
+    let [instant, .., within] = all;
+    assert!(instant > 20 && within > 3, "kinds of costs met: {all:?}");
+    let mut scene = shipped("plain", [48, 32], 12);
+    set(&mut scene, "trace.adaptive", "0.1");
+    set(&mut scene, "trace.refine", "contrast");
+    hold(&mut open(&scene, 2), "contrast");
 }
 
 #[test]

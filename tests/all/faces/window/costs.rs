@@ -51,6 +51,7 @@ fn words(cost: Cost) -> (String, Option<f64>) {
         Cost::Instant => ("instant".into(), None),
         Cost::InstantUpTo(x, _) => ("instant ≤ ".into(), Some(x)),
         Cost::InstantDownTo(x, _) | Cost::RereadBelow(x, _) => ("instant ≥ ".into(), Some(x)),
+        Cost::InstantWithin(..) => panic!("sampling is not adaptive: {cost:?}"),
         Cost::InstantAboveZero(_) => ("instant > 0".into(), None),
         Cost::Refold => ("refold".into(), None),
         Cost::Reread(pixels) => (format!("rereads {}", percent(pixels)), None),
