@@ -14,7 +14,7 @@ const THIN: f64 = 1.5;
 /// Marks for one thing at most: a wire across the largest picture.
 const MOST_MARKS: usize = 1 << 18;
 
-/// The pixels where spheres, boxes and polygons are seen whose picture is thinner than 1½ pixels.
+/// The pixels where single solids and polygons are seen whose picture is thinner than 1½ pixels.
 ///
 /// Those of a mesh, a knot or a sphereflake are not looked for; nor is what is seen in mirrors.
 #[derive(Clone, Debug, Default)]
@@ -116,6 +116,18 @@ mod tests {
             motion: Default::default(),
         }];
         scene
+    }
+
+    #[test]
+    fn a_rod_across_the_picture_is_a_wire() {
+        let mut scene = bar(0.1);
+        let end = DVec3::new(20.0, 0.0, 15.0);
+        scene.solids[0].shape = Shape::Cylinder { from: -end, to: end, radius: 0.05 };
+        let thin = ThinPixels::of(&scene);
+        assert!((12..52).all(|x| thin.contains([x, 24 - (3 * (x as i32 - 32) / 4 + 1) as u32])));
+        assert!(!thin.contains([32, 35]) && thin.pixels.len() < 400);
+        scene.solids[0].shape = Shape::Cylinder { from: -end, to: end, radius: 2.0 };
+        assert!(ThinPixels::of(&scene).pixels.is_empty());
     }
 
     #[test]

@@ -65,7 +65,7 @@ fn case(minor: f64, o: DVec3, d: DVec3, mut roots: Vec<f64>) -> Case {
     roots.sort_unstable_by(f64::total_cmp);
     let apart = roots.windows(2).map(|pair| pair[1] - pair[0]).fold(1.0, f64::min);
     // Roots that are close together turn an error of the line by ε into one of ε/√δ.
-    let tolerance = 16.0 * EPS * (1.0 + o.length()) / (d.length() * apart.min(1.0));
+    let tolerance = 4.0 * EPS * (1.0 + o.length()) / (d.length() * apart.min(1.0));
     Case { minor, o, d, roots, tolerance }
 }
 
@@ -117,7 +117,7 @@ fn categories() -> Vec<(String, Vec<Case>)> {
             outside.push(level(0.3, 0.25, (0.3 + delta) * side, 4.0));
         }
         for case in inside.iter_mut().chain(&mut outside) {
-            case.tolerance = case.tolerance.min(64.0 * EPS * 4.0 / delta.sqrt()).max(1e-14 * 4.0);
+            case.tolerance = case.tolerance.min(8.0 * EPS * 4.0 / delta.sqrt()).max(1e-14);
         }
         all.push((format!("tangent inside by 1e-{exponent}"), inside));
         all.push((format!("tangent outside by 1e-{exponent}"), outside));

@@ -16,6 +16,7 @@ use rayforest::session::plan::Plan;
 use rayforest::session::trace::TraceError;
 use rayforest::session::{Class, Options, Session, Work};
 
+use super::classes::solids;
 use super::random::Random;
 use super::table::LAMPS;
 use super::{assert_same_picture, open, options, set, shipped};
@@ -428,6 +429,21 @@ fn lamps() {
 #[test]
 fn gallery() {
     wander("gallery", &small("gallery"), None);
+}
+
+#[test]
+fn chain() {
+    wander("chain", &small("chain"), None);
+}
+
+#[test]
+fn gears() {
+    wander("gears", &small("gears"), None);
+}
+
+#[test]
+fn solids_of_all_kinds() {
+    wander("solids", &solids(), None);
 }
 
 #[test]
