@@ -125,6 +125,18 @@ mod tests {
     }
 
     #[test]
+    fn a_rod_across_the_picture_is_a_wire() {
+        let mut scene = bar(0.1);
+        let end = DVec3::new(20.0, 0.0, 15.0);
+        scene.solids[0].shape = Shape::Cylinder { from: -end, to: end, radius: 0.05 };
+        let thin = ThinPixels::of(&scene);
+        assert!((12..52).all(|x| thin.contains([x, 24 - (3 * (x as i32 - 32) / 4 + 1) as u32])));
+        assert!(!thin.contains([32, 35]) && thin.pixels.len() < 400);
+        scene.solids[0].shape = Shape::Cylinder { from: -end, to: end, radius: 2.0 };
+        assert!(ThinPixels::of(&scene).pixels.is_empty());
+    }
+
+    #[test]
     fn a_wire_is_found_along_its_length_and_a_beam_is_not() {
         let thin = ThinPixels::of(&bar(0.1));
         assert!((12..52).all(|x| thin.contains([x, 23]) && thin.contains([x, 24])));

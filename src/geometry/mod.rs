@@ -39,6 +39,10 @@ mod tests;
 mod tests_acne;
 #[cfg(test)]
 mod tests_motion;
+#[cfg(test)]
+mod tests_solids;
+#[cfg(test)]
+mod tests_torus;
 mod texel;
 mod tone;
 mod torus;

@@ -143,6 +143,23 @@ fn flake() -> Vec<Solid> {
     vec![solid(Shape::Sphereflake { center: DVec3::ZERO, radius: 0.5, levels: 4 })]
 }
 
+/// Every solid with functions of its own, turned and stretched, close together.
+fn bodies() -> Vec<Solid> {
+    let mut random = Random(13);
+    let keys = ["cylinder", "cone", "torus", "ellipsoid", "quadric", "prism"];
+    let body = |i: usize| {
+        let mut one = solid(Shape::named(keys[i % keys.len()]));
+        one.placement.translate = random.in_cube() * 4.0;
+        one.placement.rotate_degrees = random.in_cube() * 90.0;
+        one.placement.scale = DVec3::splat(0.4 + 0.3 * random.signed());
+        if i % 4 == 0 {
+            one.placement.scale.y *= 1.5;
+        }
+        one
+    };
+    (0..60).map(body).collect()
+}
+
 #[test]
 fn hierarchy_is_the_list() {
     let coincident = || (0..300).map(|_| solid(Shape::Sphere { center: DVec3::ONE, radius: 1.0 }));
@@ -161,6 +178,8 @@ fn hierarchy_is_the_list() {
         (boxes(), 40_000),
         (coincident().collect(), 3_000),
         (mixed(), 10_000),
+        (bodies(), 8_000),
+        (moved(bodies(), 1.0, far), 2_000),
         (moved(mixed(), 1e-3, far * 1e-2), 5_000),
     ];
     for (i, (solids, rays)) in scenes.into_iter().enumerate() {
@@ -220,6 +239,7 @@ fn powers_of_two_change_no_bit() {
     let mut solids = boxes();
     solids.push(mesh_solid(knot()));
     solids.extend(flake());
+    solids.extend(bodies());
     let one = build(solids.clone());
     let targets = targets(&one);
     let mut stack = Stack::new(&one);

@@ -2,7 +2,7 @@
 
 use crate::progress::Progress;
 use fearless_simd::Level;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::generate;
 use super::shear::point;
@@ -23,11 +23,28 @@ fn convex() -> Vec<(&'static str, Solid)> {
         solid.placement = Placement { rotate_degrees, scale, ..Placement::default() };
         solid
     };
+    let cone = Shape::Cone { from: corner, to: -corner, radius: 0.9, tip: 0.4 };
+    let half_space = Shape::Quadric {
+        squares: DVec3::ZERO,
+        products: DVec3::ZERO,
+        linear: DVec3::new(1.0, 2.0, 1.0),
+        constant: -0.7,
+        min: -corner,
+        max: corner,
+    };
+    let outline = [[-0.9, -0.7], [0.8, -0.8], [1.0, 0.3], [0.1, 0.9], [-0.8, 0.6]];
+    let outline = vec![outline.map(DVec2::from).to_vec()];
     vec![
         ("sphere", sphere()),
         ("ellipsoid", turned(sphere(), DVec3::new(1.0, 0.5, 0.8))),
         ("box", cuboid()),
         ("turned box", turned(cuboid(), DVec3::ONE)),
+        ("cylinder", turned(solid(Shape::named("cylinder")), DVec3::new(0.6, 0.6, 0.9))),
+        ("cone", turned(solid(Shape::named("cone")), DVec3::ONE)),
+        ("truncated cone", solid(cone)),
+        ("stretched cone", turned(solid(Shape::named("cone")), DVec3::new(1.0, 0.5, 0.8))),
+        ("block of a quadric", turned(solid(half_space), DVec3::ONE)),
+        ("prism", turned(solid(Shape::Prism { outline, bottom: -0.8, top: 0.9 }), DVec3::ONE)),
         ("cube of triangles", turned(mesh_solid(triangle_cube()), DVec3::ONE)),
         ("ball of triangles", mesh_solid(ball())),
     ]
@@ -210,16 +227,103 @@ fn rays_from_a_knot_meet_it_only_elsewhere() {
     }
 }
 
+/// Bodies that a ray may meet again after it left them.
+fn hollow() -> Vec<(&'static str, Solid)> {
+    let star = |i: u32| {
+        let angle = f64::from(i) * std::f64::consts::PI / 7.0;
+        DVec2::from_angle(angle) * if i.is_multiple_of(2) { 1.0 } else { 0.45 }
+    };
+    let hole = [[-0.2, -0.2], [0.3, -0.1], [0.0, 0.3]].map(DVec2::from).to_vec();
+    let outline = vec![(0..14).map(star).collect(), hole];
+    vec![
+        ("torus", solid(Shape::Torus { major: 0.7, minor: 0.3 })),
+        ("thin torus", solid(Shape::Torus { major: 0.8, minor: 0.05 })),
+        ("torus without a hole", solid(Shape::Torus { major: 0.4, minor: 0.6 })),
+        ("hyperboloid", solid(Shape::named("quadric"))),
+        ("star", solid(Shape::Prism { outline, bottom: -0.6, top: 0.7 })),
+    ]
+}
+
+#[test]
+fn rays_from_hollow_bodies_meet_them_only_elsewhere() {
+    for (scale, offset) in resolvable() {
+        for (i, (name, mut body)) in hollow().into_iter().enumerate() {
+            body.placement.rotate_degrees = DVec3::new(20.0, 30.0, 40.0);
+            if i % 2 == 0 {
+                body.placement.scale = DVec3::new(1.0, 0.8, 1.1);
+            }
+            let geometry = build(moved(vec![body], scale, offset));
+            let (mut random, mut stack) = (Random(3), Stack::new(&geometry));
+            let mut left = 0;
+            while left < 3_000 {
+                let place = (scale, offset);
+                let Some(at) = surface_point(&geometry, &mut stack, &mut random, place, false)
+                else {
+                    continue;
+                };
+                left += 1;
+                let (ray, leaving) = geometry.spawn(&at, random.direction());
+                let Some(hit) = closest(&geometry, Level::new(), &mut stack, &ray, Some(leaving))
+                else {
+                    assert!(!leaving.inside, "{name} of size {scale} at {offset}: lost inside");
+                    continue;
+                };
+                let normal = geometry.interaction(&stack, &ray, hit).geometric_normal;
+                let leaves = normal.dot(ray.direction) > 0.0;
+                assert_eq!(leaves, leaving.inside, "{name} of size {scale} at {offset}: {}", hit.t);
+            }
+        }
+    }
+}
+
+#[test]
+fn acne_none_on_the_outer_half_of_a_torus() {
+    // There the surface is convex: what leaves it does not come back.
+    for (scale, offset) in resolvable() {
+        let body = solid(Shape::Torus { major: 0.7, minor: 0.3 });
+        let geometry = build(moved(vec![body], scale, offset));
+        let (mut random, mut stack) = (Random(5), Stack::new(&geometry));
+        let mut left = 0;
+        while left < 8_000 {
+            let place = (scale, offset);
+            let Some(at) = surface_point(&geometry, &mut stack, &mut random, place, false) else {
+                continue;
+            };
+            if (at.point - offset).truncate().length() < 0.705 * scale {
+                continue;
+            }
+            let mut direction = random.direction();
+            direction *= direction.dot(at.geometric_normal).signum();
+            let (ray, leaving) = geometry.spawn(&at, direction);
+            let light = (&ray, f64::INFINITY);
+            let seen = shadow(&geometry, Level::new(), &mut stack, light, Some(leaving), &OPAQUE);
+            assert_eq!(seen, Ok(vec![]), "size {scale} at {offset}: {at:?} {direction}");
+            left += 1;
+        }
+    }
+}
+
 #[test]
 fn an_occluder_just_above_still_shadows() {
     // A lid over the top of each body, 1e-9 of its size above it, at every resolvable offset.
     for offset in [0.0, 1e2, 1e4, 1e6] {
         let offset = DVec3::splat(offset);
         let gap = 1e-9;
+        // Lies on its outer equator.
+        let mut torus = solid(Shape::Torus { major: 0.7, minor: 0.3 });
+        torus.placement.rotate_degrees = DVec3::new(90.0, 0.0, 0.0);
+        torus.placement.translate = DVec3::NEG_Z;
         for body in [
             solid(Shape::Sphere { center: DVec3::NEG_Z, radius: 1.0 }),
             solid(Shape::Box { min: DVec3::new(-1.0, -1.0, -1.0), max: DVec3::new(1.0, 1.0, 0.0) }),
             solid(Shape::Plane { normal: DVec3::Z, offset: 0.0 }),
+            solid(Shape::Cylinder { from: DVec3::NEG_Z, to: DVec3::ZERO, radius: 1.0 }),
+            solid(Shape::Cylinder {
+                from: DVec3::new(-1.0, 0.0, -1.0),
+                to: DVec3::new(1.0, 0.0, -1.0),
+                radius: 1.0,
+            }),
+            torus,
             mesh_solid(Mesh {
                 positions: triangle_cube().positions.iter().map(|p| *p - DVec3::Z).collect(),
                 ..triangle_cube()

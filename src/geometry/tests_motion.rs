@@ -20,11 +20,17 @@ fn moving(shutter: f64) -> Scene {
         solid(Shape::Knot { turns: [2, 3], tube: 0.3, segments: [60, 8] }),
         solid(Shape::Sphereflake { center: DVec3::ZERO, radius: 0.6, levels: 3 }),
         solid(Shape::Sphere { center: DVec3::Y, radius: 0.5 }),
+        solid(Shape::named("cylinder")),
+        solid(Shape::named("cone")),
+        solid(Shape::named("torus")),
+        solid(Shape::named("ellipsoid")),
+        solid(Shape::named("quadric")),
+        solid(Shape::named("prism")),
         solid(Shape::Box { min: DVec3::splat(4.0), max: DVec3::splat(5.0) }),
         solid(Shape::Plane { normal: DVec3::Z, offset: -6.0 }),
     ];
     let mut random = Random(11);
-    for (i, one) in solids.iter_mut().take(7).enumerate() {
+    for (i, one) in solids.iter_mut().take(13).enumerate() {
         one.placement.translate = random.in_cube() * 3.0;
         one.placement.rotate_degrees = random.in_cube() * 180.0;
         one.placement.scale = DVec3::splat(1.0 + 0.3 * random.signed());
@@ -147,7 +153,7 @@ fn what_does_not_move_is_compiled_as_ever() {
     let standing = Geometry::build(&moving(0.0), &Progress::default()).unwrap();
     assert!(standing.primitives.moving.is_empty(), "the shutter opens for no time");
     let geometry = Geometry::build(&moving(0.3), &Progress::default()).unwrap();
-    assert_eq!(geometry.primitives.moving.len(), 7);
+    assert_eq!(geometry.primitives.moving.len(), 13);
     assert_eq!(geometry.primitives(), standing.primitives());
     let [a, b] = [&geometry, &standing].map(|g| g.primitives.solid_of.clone());
     assert_eq!(a, b, "primitives keep their numbers");
@@ -155,7 +161,7 @@ fn what_does_not_move_is_compiled_as_ever() {
     let first = standing.bounds().unwrap();
     assert!(bounds[0].cmple(first[0] + 1e-9).all() && bounds[1].cmpge(first[1] - 1e-9).all());
     let mut crossed = vec![];
-    let opaque = vec![true; 9];
+    let opaque = vec![true; 15];
     let mut query = Shadow::new(&geometry.primitives, 99.0, &opaque, &mut crossed);
     let ray = Ray { origin: DVec3::splat(9.0), direction: DVec3::splat(-1.0).normalize() };
     geometry.traverse_all(0.1, &ray, None, &mut query);

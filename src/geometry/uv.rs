@@ -311,7 +311,17 @@ mod tests {
     #[test]
     fn gradients_are_the_slopes_of_u_and_v() {
         let mesh = Shape::Knot { turns: [2, 3], tube: 0.3, segments: [40, 10] };
+        let outline = [[-1.5, -1.4], [1.6, -1.2], [1.4, 1.5], [-1.3, 1.2]];
+        let outline = vec![outline.map(DVec2::from).to_vec()];
         let shapes = [
+            Shape::Cylinder { from: -DVec3::X, to: DVec3::new(1.2, 0.3, 0.9), radius: 1.0 },
+            Shape::Cylinder { from: -DVec3::Z, to: DVec3::Z, radius: 2.0 },
+            Shape::Cone { from: -DVec3::Z, to: DVec3::Z * 1.5, radius: 2.0, tip: 0.5 },
+            Shape::Torus { major: 1.0, minor: 0.6 },
+            Shape::Ellipsoid { center: DVec3::X * 0.2, radii: DVec3::new(1.5, 1.2, 0.9) },
+            Shape::named("quadric"),
+            Shape::Prism { outline: outline.clone(), bottom: -1.0, top: 1.0 },
+            Shape::Prism { outline, bottom: -1.0, top: 9.0 },
             Shape::Sphere { center: DVec3::ZERO, radius: 1.3 },
             Shape::Box { min: DVec3::splat(-1.0), max: DVec3::new(1.0, 2.0, 1.5) },
             Shape::Plane { normal: DVec3::new(1.0, 2.0, 3.0), offset: 0.5 },
@@ -355,6 +365,36 @@ mod tests {
         near(from([1.0, 2.0, 0.25], DVec3::Y), [0.75, 0.25]);
         near(from([0.0, 0.5, 0.25], -DVec3::X), [0.75, 0.25]);
         near(from([1.0, 0.5, 1.0], DVec3::Z), [0.25, 0.25]);
+    }
+
+    #[test]
+    fn round_solids_are_wrapped_and_their_ends_are_flat() {
+        let rod = Shape::Cylinder { from: DVec3::ZERO, to: DVec3::Z * 4.0, radius: 2.0 };
+        let rod = geometry(Solid::new("r", rod, 0));
+        let at = |out: DVec3, z: f64| uv(&rod, out * 9.0 + DVec3::Z * z, DVec3::Z * z).at;
+        near(at(DVec3::Y, 1.0), [0.25, 0.25]);
+        near(at(-DVec3::X, 3.0), [0.5, 0.75]);
+        let end = DVec3::new(1.0, 0.0, 4.0);
+        near(uv(&rod, end + DVec3::Z, end).at, [0.75, 0.5]);
+        let other = DVec3::new(1.0, 1.0, 0.0);
+        near(uv(&rod, other - DVec3::Z, other).at, [0.25, 0.75]);
+        let ring = geometry(Solid::new("t", Shape::Torus { major: 2.0, minor: 0.5 }, 0));
+        near(uv(&ring, DVec3::Y * 9.0, DVec3::ZERO).at, [0.25, 0.5]);
+        let top = DVec3::new(-2.0, 0.0, 0.5);
+        near(uv(&ring, top + DVec3::Z, top).at, [0.5, 0.75]);
+    }
+
+    #[test]
+    fn a_prism_is_wrapped_along_its_outline() {
+        let outline = vec![[[0., 0.], [4., 0.], [4., 1.], [0., 1.]].map(DVec2::from).to_vec()];
+        let bar = Shape::Prism { outline, bottom: 1.0, top: 3.0 };
+        let bar = geometry(Solid::new("p", bar, 0));
+        let seen = |at: [f64; 3], out: DVec3| uv(&bar, DVec3::from(at) + out, at.into()).at;
+        near(seen([1.0, 0.0, 1.5], -DVec3::Y), [0.1, 0.25]);
+        near(seen([4.0, 0.5, 2.0], DVec3::X), [0.45, 0.5]);
+        near(seen([0.0, 0.25, 2.0], -DVec3::X), [0.975, 0.5]);
+        near(seen([1.0, 0.5, 3.0], DVec3::Z), [0.25, 0.5]);
+        near(seen([1.0, 0.5, 1.0], -DVec3::Z), [0.75, 0.5]);
     }
 
     #[test]

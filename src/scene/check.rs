@@ -352,6 +352,35 @@ mod tests {
     }
 
     #[test]
+    fn solids_without_an_inside_are_refused() {
+        let of = |s: Shape| shape(&s).map(|(key, message, _)| (key, message));
+        let (from, radius) = (DVec3::ONE, 1.0);
+        let rod = of(Shape::Cylinder { from, to: from, radius }).unwrap();
+        assert_eq!(rod, ("to", "`to` is where `from` is: the solid has no length".to_owned()));
+        assert_eq!(of(Shape::Cone { from, to: from, radius, tip: 0.0 }).unwrap().0, "to");
+        let Shape::Quadric { products, linear, constant, min, max, .. } = Shape::named("quadric")
+        else {
+            panic!()
+        };
+        let squares = DVec3::ZERO;
+        let none = of(Shape::Quadric { squares, products, linear, constant, min, max }).unwrap();
+        assert_eq!(none.0, "squares");
+        let squares = DVec3::ONE;
+        let (min, max) = (max, min);
+        let inverted = of(Shape::Quadric { squares, products, linear, constant, min, max });
+        assert_eq!(inverted.unwrap().0, "max");
+        let Shape::Prism { outline, bottom, top } = Shape::named("prism") else { panic!() };
+        let (top, bottom) = (bottom, top);
+        let inverted = of(Shape::Prism { outline, bottom, top }).unwrap();
+        assert_eq!(inverted.1, "`top` must exceed `bottom`; they are 0 and 1");
+        let outline =
+            vec![[[0., 0.], [2., 2.], [2., 0.], [0., 3.]].map(glam::DVec2::from).to_vec()];
+        let crossed = of(Shape::Prism { outline, bottom: 0.0, top: 1.0 }).unwrap();
+        assert_eq!(crossed.0, "outline");
+        assert_eq!(crossed.1, "the outline crosses itself: edge 1 meets edge 3");
+    }
+
+    #[test]
     fn polygons_are_flat_relative_to_their_extent() {
         let square = |lift: f64, size: f64| {
             let corners = [[0., 0., 0.], [1., 0., 0.], [1., 1., lift], [0., 1., 0.]];

@@ -9,7 +9,7 @@ use rayforest::scene::{Lens, Light, Material, Paint, Scene, read};
 use rayforest::session::{Class, Session};
 
 use super::comes_alive::comes_alive;
-use super::table::{GLOSSY, LAMPS, LENS, MODELS, OPEN, ROWS, Row, SCENE};
+use super::table::{GLOSSY, LAMPS, LENS, MODELS, OPEN, ROWS, Row, SCENE, SOLIDS};
 use super::{assert_same_picture, open, set};
 
 fn all_kinds() -> Scene {
@@ -19,6 +19,12 @@ fn all_kinds() -> Scene {
 /// Lights of the other kinds, and blurred rays.
 fn lamps() -> Scene {
     read::text(LAMPS, Path::new("lamps.toml")).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The same with solids of the other kinds.
+pub(super) fn solids() -> Scene {
+    let text = format!("{SCENE}{SOLIDS}");
+    read::text(&text, Path::new("solids.toml")).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// The same from infinitely far away.
@@ -166,6 +172,21 @@ fn lights_and_lobes_cost_what_the_table_says() {
     }
 }
 
+#[test]
+fn solids_of_the_other_kinds_cost_what_the_table_says() {
+    let first = open(&solids(), 2);
+    let known = parameters(&all_kinds());
+    let instant =
+        ["materials.brass.diffuse", "materials.glass.filter", "materials.mirror.specular"];
+    for parameter in parameters(&solids()) {
+        let new = known.iter().all(|known| known.path != parameter.path);
+        let shape = parameter.path.split('.').count() == 4;
+        if instant.contains(&parameter.path.as_str()) || (new && shape) {
+            take_steps(&first, &parameter, row_of(ROWS, &parameter.path).unwrap());
+        }
+    }
+}
+
 /// While nothing is mirrored a lobe costs nothing; it is made up for when something is.
 #[test]
 fn a_lobe_that_did_not_matter() {
@@ -197,6 +218,7 @@ fn every_row_is_the_row_of_a_parameter() {
     let mut paths: Vec<String> = parameters(&all_kinds()).into_iter().map(|p| p.path).collect();
     paths.extend(parameters(&parallel()).into_iter().map(|p| p.path));
     paths.extend(parameters(&lamps()).into_iter().map(|p| p.path));
+    paths.extend(parameters(&solids()).into_iter().map(|p| p.path));
     for row in ROWS {
         let used = paths.iter().any(|p| row_of(ROWS, p).is_ok_and(|r| r.path == row.path));
         assert!(used, "row `{}` is for nothing", row.path);

@@ -46,8 +46,9 @@ fn scenes() -> PathBuf {
 }
 
 /// The shipped scenes by the stem of their file.
-const SHIPPED: [&str; 10] = [
+const SHIPPED: [&str; 12] = [
     "whitted", "plain", "glass", "gems", "flake", "mesh", "mirrors", "motion", "studio", "gallery",
+    "chain", "gears",
 ];
 
 /// A shipped scene as a small picture; the knot with fewer triangles, the flake with fewer spheres.

@@ -17,6 +17,7 @@ use rayforest::session::plan::Plan;
 use rayforest::session::trace::TraceError;
 use rayforest::session::{Class, Options, Session, Work};
 
+use super::classes::solids;
 use super::random::Random;
 use super::table::LAMPS;
 use super::{assert_same_picture, open, options, set, shipped};
@@ -505,6 +506,21 @@ fn adaptive_with_released_trees() {
     let mut scene = adaptive("whitted", "16", "trees");
     set(&mut scene, "picture.size", "[130, 70]");
     wander_adaptive("released, adaptive", &scene, Some(0.7));
+}
+
+#[test]
+fn chain() {
+    wander("chain", &small("chain"), None);
+}
+
+#[test]
+fn gears() {
+    wander("gears", &small("gears"), None);
+}
+
+#[test]
+fn solids_of_all_kinds() {
+    wander("solids", &solids(), None);
 }
 
 #[test]

@@ -136,6 +136,16 @@ bulb = { sphere = { center = [0.2, -1.6, 0.8], radius = 0.7 }, material = "glass
 cube = { box = { min = [0, 0, 0], max = [0.8, 0.8, 1.2] }, material = "plain" }
 "#;
 
+/// Solids of the kinds that [`SCENE`] lacks, to be added to it.
+pub(super) const SOLIDS: &str = r#"
+rod = { cylinder = { from = [-0.6, -2, 0.2], to = [0.4, -2.4, 0.9], radius = 0.2 }, material = "glass" }
+hat = { cone = { from = [1.6, 0.6, 0], to = [1.6, 0.6, 1.1], radius = 0.5, tip = 0.1 }, material = "mirror" }
+tyre = { torus = { major = 0.5, minor = 0.2 }, material = "brass", rotate_degrees = [70, 0, 20], translate = [-2.2, -0.5, 0.7] }
+egg = { ellipsoid = { center = [0.9, -2, 0.4], radii = [0.3, 0.3, 0.45] }, material = "plain" }
+spool = { quadric = { squares = [1, 1, -1], products = [0.1, 0, 0], linear = [0, 0, 0.1], constant = -0.1, min = [-0.6, -0.6, -0.5], max = [0.6, 0.6, 0.5] }, material = "glass", translate = [2, -2, 0.6], scale = 0.8 }
+key = { prism = { outline = [[[0, 0], [0.8, 0], [0.8, 0.6], [0.4, 0.3], [0, 0.7]], [[0.1, 0.1], [0.3, 0.1], [0.2, 0.3]]], bottom = 0, top = 0.3 }, material = "plain", translate = [-1, -2.8, 0] }
+"#;
+
 /// What of [`SCENE`] is another illumination model, for [`GLOSSY`].
 pub(super) const MODELS: [(&str, &str); 7] = [
     ("materials.plain.model", "blinn"),
@@ -435,6 +445,26 @@ pub(super) const ROWS: &[Row] = &[
     row("solids.floor.plane.offset", &[("-0.1", Retrace), ("1", Retrace), ("@", Retrace)]),
     row("solids.*.sphere.center", VECTOR),
     row("solids.*.sphere.radius", LENGTH),
+    row("solids.rod.cylinder.from", &[("[-0.6, -2, 0.3]", Retrace), ("@", Retrace)]),
+    row("solids.rod.cylinder.to", &[("[0.4, -2.3, 0.9]", Retrace), ("@", Retrace)]),
+    row("solids.rod.cylinder.radius", LENGTH),
+    row("solids.hat.cone.from", &[("[1.5, 0.6, 0]", Retrace), ("@", Retrace)]),
+    row("solids.hat.cone.to", &[("[1.5, 0.6, 1]", Retrace), ("@", Retrace)]),
+    row("solids.hat.cone.radius", LENGTH),
+    row("solids.hat.cone.tip", &[("0", Retrace), ("0.7", Retrace), ("@", Retrace)]),
+    row("solids.tyre.torus.major", LENGTH),
+    row("solids.tyre.torus.minor", LENGTH),
+    row("solids.egg.ellipsoid.center", VECTOR),
+    row("solids.egg.ellipsoid.radii", &[("[0.2, 0.3, 0.3]", Retrace), ("@", Retrace)]),
+    row("solids.spool.quadric.squares", &[("[1, 0.8, -1]", Retrace), ("@", Retrace)]),
+    row("solids.spool.quadric.products", &[("[0, 0.5, 0]", Retrace), ("@", Retrace)]),
+    row("solids.spool.quadric.linear", VECTOR),
+    row("solids.spool.quadric.constant", &[("0", Retrace), ("-0.2", Retrace), ("@", Retrace)]),
+    row("solids.spool.quadric.min", &[("[-0.5, -0.6, -0.5]", Retrace), ("@", Retrace)]),
+    row("solids.spool.quadric.max", &[("[0.5, 0.6, 0.4]", Retrace), ("@", Retrace)]),
+    row("solids.key.prism.outline", &[("[[0, 0], [0.8, 0], [0.4, 0.6]]", Retrace), ("@", Retrace)]),
+    row("solids.key.prism.bottom", &[("0.1", Retrace), ("-0.5", Retrace), ("@", Retrace)]),
+    row("solids.key.prism.top", &[("0.1", Retrace), ("1", Retrace), ("@", Retrace)]),
     row("solids.cube.box.min", &[("[-0.1, 0, 0]", Retrace), ("@", Retrace)]),
     row("solids.cube.box.max", &[("[0.8, 0.8, 1.5]", Retrace), ("@", Retrace)]),
     row(

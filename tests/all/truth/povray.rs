@@ -1,4 +1,4 @@
-//! Parity with POV-Ray 3.7: four of its pictures against ours, pixel by pixel, in linear light.
+//! Parity with POV-Ray 3.7: six of its pictures against ours, pixel by pixel, in linear light.
 //!
 //! Both cast one ray through the centre of each pixel. A picture may differ where such a ray passes
 //! an edge within the rounding of either program: few pixels. All others agree to one step of the
@@ -71,6 +71,16 @@ fn refraction_and_total_reflection() {
 }
 
 #[test]
+fn cones_and_cylinders() {
+    parity("s05_cone_cyl");
+}
+
+#[test]
+fn torus() {
+    parity("s06_torus");
+}
+
+#[test]
 fn scenes_that_are_a_little_different_are_refused() {
     for (name, path, value) in [
         ("r1_whitted", "materials.glass.diffuse", "0.008"),
@@ -85,6 +95,11 @@ fn scenes_that_are_a_little_different_are_refused() {
         ("s03_refract_tir", "materials.glass.transmit", "0.999"),
         ("s03_refract_tir", "trace.depth", "2"),
         ("s03_refract_tir", "solids.prism.rotate_degrees", "[0, 0, 25.1]"),
+        ("s05_cone_cyl", "solids.truncated.cone.tip", "0.501"),
+        ("s05_cone_cyl", "solids.pointed.cone.to", "[-1.4, 0, 1.401]"),
+        ("s05_cone_cyl", "solids.rod.cylinder.radius", "0.7005"),
+        ("s06_torus", "solids.ring.torus.minor", "0.4001"),
+        ("s06_torus", "solids.ring.torus.major", "1.1001"),
     ] {
         let mut wrong = scene(name);
         path::set(&mut wrong, path, value).unwrap();
