@@ -2,6 +2,7 @@
 
 mod cached;
 mod chart;
+mod convert;
 mod demo;
 mod inspect;
 mod render;
@@ -15,9 +16,8 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Parser, Subcommand};
 use serde_json::Value;
 
-use crate::color::Rgb;
 use crate::film::write::check_writable;
-use crate::scene::energy::{Overbright, overbright};
+use crate::scene::energy::overbright;
 use crate::scene::{Scene, path, read, write};
 use crate::session::Options;
 use crate::viewer::{WindowError, measure};
@@ -48,6 +48,8 @@ enum Mode {
     Inspect(inspect::Inspect),
     /// Read a scene and report every mistake in it
     Check(Check),
+    /// Make a scene of another program's file: OBJ, glTF, GLB or NFF
+    Convert(convert::Convert),
 }
 
 #[derive(Debug, Args)]
@@ -127,6 +129,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(Mode::Merge(merge)) => merge.run(),
         Some(Mode::Inspect(inspect)) => inspect.run(),
         Some(Mode::Check(check)) => check.run(),
+        Some(Mode::Convert(convert)) => convert.run(),
         Some(Mode::Bench(bench)) => bench.run(),
     }
 }
@@ -143,12 +146,8 @@ fn window(scene: Option<PathBuf>) -> Result<(), Failure> {
 impl Check {
     fn run(self) -> Result<(), Failure> {
         let scene = read_scene(&self.scene)?;
-        for Overbright { material, sum: Rgb([r, g, b]) } in overbright(&scene) {
-            say(&format!(
-                "warning: material {}: kloc·(ambient + diffuse) + reflect + transmit is \
-                 [{r:.2}, {g:.2}, {b:.2}], above 1: it gives back more light than it gets",
-                scene.materials[material].name
-            ));
+        for bright in overbright(&scene) {
+            say(&format!("warning: {}", bright.sentence(&scene)));
         }
         print(&format!(
             "{}: no mistakes; {} solids, {} materials, {} lights",

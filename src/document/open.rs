@@ -6,10 +6,10 @@ use std::sync::Arc;
 use toml::de::DeTable;
 
 use super::history::History;
-use super::relocate::relative;
 use super::save::file_name;
 use super::{Base, Document, DocumentError};
 use crate::scene::read;
+use crate::scene::relative::relative;
 use crate::scene::{Scene, Shape, mesh};
 
 impl Document {

@@ -25,6 +25,7 @@ pub mod range;
 pub mod read;
 mod reader;
 pub mod refine;
+pub(crate) mod relative;
 pub mod slot;
 pub mod texture;
 pub(crate) mod toml_text;
