@@ -93,6 +93,8 @@ pub mod film;
 pub mod import;
 // ready for rays
 pub mod geometry;
+// volume and inertia
+pub mod mass;
 // ray trees
 pub mod forest;
 // trees to transport

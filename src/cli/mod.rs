@@ -5,6 +5,7 @@ mod chart;
 mod convert;
 mod demo;
 mod inspect;
+mod mass;
 mod render;
 mod tiles;
 mod watch;
@@ -50,6 +51,8 @@ enum Mode {
     Check(Check),
     /// Make a scene of another program's file: OBJ, glTF, GLB or NFF
     Convert(convert::Convert),
+    /// Measure volume, centre of mass and moments of inertia of solids
+    Mass(mass::Weighed),
 }
 
 #[derive(Debug, Args)]
@@ -130,6 +133,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(Mode::Inspect(inspect)) => inspect.run(),
         Some(Mode::Check(check)) => check.run(),
         Some(Mode::Convert(convert)) => convert.run(),
+        Some(Mode::Mass(mass)) => mass.run(),
         Some(Mode::Bench(bench)) => bench.run(),
     }
 }

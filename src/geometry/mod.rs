@@ -5,6 +5,7 @@
 //! be hit. The answers therefore do not depend on the tree, the SIMD width or the machine. There is
 //! no epsilon with a length in it: a ray that leaves a surface knows which one ([`Leaving`]).
 
+mod all_hits;
 mod binary;
 mod bump;
 mod compile;
@@ -45,7 +46,7 @@ use crate::scene::Scene;
 use compile::Primitives;
 use hierarchy::Hierarchy;
 pub use hierarchy::Stack;
-pub use placement::corners;
+pub use placement::{corners, rotation};
 use query::{Closest, Shadow};
 use surfaces::Surfaces;
 pub use tone::Tone;

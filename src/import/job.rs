@@ -92,8 +92,9 @@ impl<'a> Job<'a> {
 
     /// How the scene names a file that is already there.
     pub(super) fn name_of(&self, path: &Path) -> String {
-        let folder = self.target.parent().unwrap_or(Path::new(""));
-        relative(path, folder).unwrap_or_else(|| path.to_string_lossy().into_owned())
+        let folder = self.target.parent().filter(|folder| !folder.as_os_str().is_empty());
+        relative(path, folder.unwrap_or(Path::new(".")))
+            .unwrap_or_else(|| path.to_string_lossy().into_owned())
     }
 
     /// An image file named at `place`; `None`, with a remark, if it cannot be shown.

@@ -6,7 +6,8 @@ use glam::DVec3;
 
 use crate::scene::mesh::Mesh;
 
-/// The text of a mesh. Numbers are the shortest decimals that read back as the same bits.
+/// The text of a mesh. Numbers are the shortest decimals that read back as the same bits; the reader
+/// puts points into the order in which triangles use them.
 pub(super) fn text(mesh: &Mesh) -> String {
     let Mesh { positions, normals, uvs, triangles, triangle_normals, triangle_uvs } = mesh;
     let mut out = String::new();

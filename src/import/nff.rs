@@ -79,6 +79,12 @@ impl Reader<'_, '_, '_> {
             "c" => self.cone(),
             "p" => self.polygon(false),
             "pp" => self.polygon(true),
+            other if other.starts_with(|c: char| c.is_alphabetic()) => {
+                self.skip_line();
+                let text = format!("`{other}` is left out: it is no entity of NFF");
+                self.job.note(word.at(), text);
+                Ok(())
+            }
             other => {
                 let cause = format!("`{other}` is no entity of NFF");
                 let way_out = "NFF has v, b, l, f, s, c, p and pp, each with its numbers";
@@ -149,6 +155,12 @@ impl Reader<'_, '_, '_> {
             numbers.push(word.number(self.job.source)?);
         }
         Ok(numbers)
+    }
+
+    /// Passes over what follows on the same line.
+    fn skip_line(&mut self) {
+        let line = self.line;
+        while self.words.next_if(|word| word.line == line).is_some() {}
     }
 
     fn view(&mut self) -> Result<(), ImportError> {

@@ -116,7 +116,7 @@ fn outline<'a>(job: &mut Job<'_>, text: &'a str, whole: &Mesh) -> Outline<'a> {
             "f" => {
                 let face: Vec<Corner> =
                     rest.iter().map(|word| corner(word.text, &outline.lists)).collect();
-                concave(job, &face, whole, line);
+                concave(job, &face, &outline.lists[0], line);
                 let key = (object.clone(), material.clone());
                 let next = outline.groups.len();
                 let group = *groups.entry(key).or_insert(next);
@@ -203,13 +203,18 @@ fn corner(text: &str, lists: &[Vec<&str>; 3]) -> Corner {
 }
 
 /// Remarks on a face that cutting into a fan spoils.
-fn concave(job: &mut Job<'_>, face: &[Corner], whole: &Mesh, line: usize) {
+fn concave(job: &mut Job<'_>, face: &[Corner], points: &[&str], line: usize) {
     if face.len() < 4 {
         return;
     }
-    let points: Vec<DVec3> =
-        face.iter().filter_map(|c| whole.positions.get(c[0]?).copied()).collect();
-    if !super::polygon::is_convex(&points) {
+    let point = |corner: &Corner| {
+        // Points may stand behind the face that uses them: those are not looked at.
+        let words = points.get(corner[0]?)?.split_whitespace().skip(1);
+        let numbers: Vec<f64> = words.take(3).map(str::parse).collect::<Result<_, _>>().ok()?;
+        Some(DVec3::from_slice(numbers.get(..3)?))
+    };
+    let corners: Option<Vec<DVec3>> = face.iter().map(point).collect();
+    if corners.is_some_and(|corners| !super::polygon::is_convex(&corners)) {
         let text = "a concave face is cut into a fan of triangles: cut it before exporting";
         job.note(At::Line(line), text);
     }

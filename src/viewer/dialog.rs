@@ -7,6 +7,8 @@ use std::time::{Duration, Instant};
 
 use eframe::egui;
 
+use crate::import::ENDINGS;
+
 /// What a file is wanted for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
@@ -20,6 +22,8 @@ pub enum Purpose {
     Locate,
     /// An image to show on a surface or as the background.
     Image,
+    /// Another program's file to import.
+    Import,
 }
 
 impl Purpose {
@@ -31,6 +35,7 @@ impl Purpose {
             Purpose::Export => "Export the picture",
             Purpose::Locate => "Find the mesh",
             Purpose::Image => "Pick an image",
+            Purpose::Import => "Import a file",
         }
     }
 
@@ -46,6 +51,7 @@ impl Purpose {
             Purpose::Export => ("Pictures", &["png", "exr"]),
             Purpose::Locate => ("Meshes", &["obj"]),
             Purpose::Image => ("Images", &["png", "jpg", "jpeg", "hdr"]),
+            Purpose::Import => ("OBJ, glTF and NFF", &ENDINGS),
         }
     }
 }

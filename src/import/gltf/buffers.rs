@@ -17,11 +17,14 @@ pub(super) struct Buffers<'a> {
     buffers: Vec<Vec<u8>>,
 }
 
+/// Reads one number from its bytes.
+type Read = fn(&[u8]) -> f64;
+
 /// What an accessor's numbers are.
 #[derive(Clone, Copy)]
 struct Component {
     bytes: usize,
-    read: fn(&[u8]) -> f64,
+    read: Read,
     /// What stands for 1, if whole numbers stand for shares.
     one: f64,
 }
@@ -172,7 +175,7 @@ fn component(kind: &Json<'_>) -> Result<Component, ImportError> {
         own.copy_from_slice(bytes);
         own
     }
-    let (bytes, one, read): (usize, f64, fn(&[u8]) -> f64) = match kind.whole()? {
+    let (bytes, one, read): (usize, f64, Read) = match kind.whole()? {
         5120 => (1, 127.0, |b| f64::from(i8::from_le_bytes(bytes(b)))),
         5121 => (1, 255.0, |b| f64::from(b[0])),
         5122 => (2, 32_767.0, |b| f64::from(i16::from_le_bytes(bytes(b)))),

@@ -59,7 +59,7 @@ impl<'a> Json<'a> {
         self.get(key).map_or(Ok(Vec::new()), |list| list.items())
     }
 
-    /// The element of the document's list `list` that this index names.
+    /// The element that this index names of the list `list` of the document, or of another part of it.
     pub(super) fn follow(&self, root: &Json<'a>, list: &str) -> Result<Json<'a>, ImportError> {
         let index = self.whole()?;
         let all =
@@ -68,7 +68,8 @@ impl<'a> Json<'a> {
             usize::try_from(index).ok().and_then(|index| all.get(index)).ok_or_else(|| {
                 self.error(format!("there is no {list}[{index}]; the file has {}", all.len()))
             })?;
-        Ok(Json { value, file: self.file, key: format!("{list}[{index}]") })
+        let dot = if root.key.is_empty() { "" } else { "." };
+        Ok(Json { value, file: self.file, key: format!("{}{dot}{list}[{index}]", root.key) })
     }
 
     pub(super) fn text(&self) -> Result<&'a str, ImportError> {
@@ -77,7 +78,7 @@ impl<'a> Json<'a> {
 
     pub(super) fn whole(&self) -> Result<u64, ImportError> {
         // Some writers put 3.0 for 3.
-        let exact = |x: f64| (x >= 0.0 && x < 1e15 && x.fract() == 0.0).then_some(x as u64);
+        let exact = |x: f64| ((0.0..1e15).contains(&x) && x.fract() == 0.0).then_some(x as u64);
         let whole = self.value.as_u64().or_else(|| self.value.as_f64().and_then(exact));
         whole.ok_or_else(|| self.error("this is no whole number from 0"))
     }

@@ -204,7 +204,7 @@ fn mapped(given: &Given, name: String) -> Material {
     let (metal, rough) = (clamp(given.metallic), clamp(given.roughness));
     let base = Rgb(given.base.map(|x| fields::COEFFICIENT.clamp(x) as f32));
     let (mirror, through) = (rough < SMOOTH, clamp(given.transmission) * (1.0 - metal));
-    let mut m = Material { name, ..Material::new("") };
+    let mut m = Material { name, ambient: Rgb::BLACK, ..Material::new("") };
     m.paint = match &given.image {
         Some(image) => Paint::Image { image: image.clone(), tint: base, size: 1.0 },
         None => Paint::Solid(base),
@@ -229,7 +229,6 @@ fn mapped(given: &Given, name: String) -> Material {
     let share = |metal_share: f64| (1.0 - metal) + metal * metal_share;
     m.diffuse =
         Rgb::grey((share(if mirror { 0.0 } else { METAL_DIFFUSE }) * (1.0 - facing)) as f32);
-    m.ambient = m.diffuse;
     m.kloc = Rgb::grey(((1.0 - through) * clamp(given.alpha)) as f32);
     if mirror {
         // n of the lobe cosⁿ whose width is that of the slope: 2/m² − 2.

@@ -13,7 +13,6 @@ use serde_json::Value;
 
 use super::job::{Job, Names};
 use super::place::{At, ImportError};
-use crate::color::Rgb;
 use crate::scene::{Lens, Scene, Solid};
 use buffers::Buffers;
 use json::Json;
@@ -47,14 +46,16 @@ pub(super) fn read(job: &mut Job<'_>, bytes: &[u8]) -> Result<Scene, ImportError
     let root = Json::root(&document, job.source);
     version(job, &root)?;
     let buffers = Buffers::read(job, &root, binary)?;
-    let mut scene = Scene { ambient_light: Rgb::BLACK, ..Scene::default() };
-    job.note(At::File, "added: glTF has no ambient light, ambient_light is set to 0");
+    let mut scene = Scene::default();
     scene.materials = material::materials(job, &buffers)?;
     let mut walk =
         Walk { job, buffers, scene, names: Names::default(), camera: None, met: HashSet::new() };
     walk.scene_nodes(&root)?;
-    let Walk { job, scene, .. } = walk;
+    let Walk { job, scene, camera, .. } = walk;
     remarks(job, &root)?;
+    unplaced(job, root.get("cameras"), usize::from(camera.is_some()))?;
+    let lights = root.extension("KHR_lights_punctual").and_then(|all| all.get("lights"));
+    unplaced(job, lights, scene.lights.len())?;
     Ok(without_unused(scene))
 }
 
@@ -128,6 +129,17 @@ fn remarks(job: &mut Job<'_>, root: &Json<'_>) -> Result<(), ImportError> {
         if !KNOWN.contains(&name) && !of_material {
             job.note(extension.at(), format!("`{name}` is left out: it is not read"));
         }
+    }
+    Ok(())
+}
+
+/// Says that cameras or lights stand in no node that is shown, and so nowhere.
+fn unplaced(job: &mut Job<'_>, list: Option<Json<'_>>, used: usize) -> Result<(), ImportError> {
+    if let Some(list) = list
+        && used == 0
+        && !list.items()?.is_empty()
+    {
+        job.note(list.at(), "they are left out: no node says where they are");
     }
     Ok(())
 }
@@ -292,9 +304,10 @@ fn transform(node: &Json<'_>) -> Result<DMat4, ImportError> {
     let [x, y, z, w] = node.numbers("rotation")?.unwrap_or([0.0, 0.0, 0.0, 1.0]);
     let scale = node.numbers("scale")?.unwrap_or([1.0; 3]);
     let rotation = DQuat::from_xyzw(x, y, z, w);
-    if !(rotation.length_squared() > 1e-30) {
-        return Err(node.error("`rotation` is zero, which is no rotation"));
+    let length = rotation.length();
+    if length < 1e-15 || !length.is_finite() {
+        return Err(node.error("`rotation` is zero or endless, which is no rotation"));
     }
-    let rotation = rotation.normalize();
+    let rotation = rotation / length;
     Ok(DMat4::from_scale_rotation_translation(scale.into(), rotation, translation.into()))
 }
