@@ -71,6 +71,8 @@
 //!   writer of scene files: a parameter without a control cannot be written.
 //! * **The text belongs to the person.** A document keeps the text of its file and changes single
 //!   values in it; whatever is written is read back and compared bit for bit first.
+//! * **Nothing is dropped silently.** An import of another program's file is an ordinary scene, files
+//!   beside it, and a list of remarks: what has no place in a scene, with its place in the file.
 //! * **Absences.** `shade` never sees `geometry`; nothing below `cli` prints; nothing is `unsafe`;
 //!   there are no globals.
 //!
@@ -89,8 +91,12 @@ pub mod progress;
 pub mod scene;
 // what the eye gets
 pub mod film;
+// scenes of other programs
+pub mod import;
 // ready for rays
 pub mod geometry;
+// volume and inertia
+pub mod mass;
 // ray trees
 pub mod forest;
 // trees to transport

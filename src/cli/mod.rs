@@ -2,8 +2,10 @@
 
 mod cached;
 mod chart;
+mod convert;
 mod demo;
 mod inspect;
+mod mass;
 mod render;
 mod tiles;
 mod watch;
@@ -16,9 +18,8 @@ use clap::{Args, Parser, Subcommand};
 use serde_json::Value;
 
 use crate::bench;
-use crate::color::Rgb;
 use crate::film::write::check_writable;
-use crate::scene::energy::{Overbright, overbright};
+use crate::scene::energy::overbright;
 use crate::scene::{Scene, path, read, write};
 use crate::session::Options;
 use crate::viewer::{WindowError, measure};
@@ -49,6 +50,10 @@ enum Mode {
     Inspect(inspect::Inspect),
     /// Read a scene and report every mistake in it
     Check(Check),
+    /// Make a scene of another program's file: OBJ, glTF, GLB or NFF
+    Convert(convert::Convert),
+    /// Measure volume, centre of mass and moments of inertia of solids
+    Mass(mass::Weighed),
 }
 
 #[derive(Debug, Args)]
@@ -132,6 +137,8 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(Mode::Merge(merge)) => merge.run(),
         Some(Mode::Inspect(inspect)) => inspect.run(),
         Some(Mode::Check(check)) => check.run(),
+        Some(Mode::Convert(convert)) => convert.run(),
+        Some(Mode::Mass(mass)) => mass.run(),
         Some(Mode::Bench(bench)) => bench.run(),
     }
 }
@@ -148,12 +155,8 @@ fn window(scene: Option<PathBuf>) -> Result<(), Failure> {
 impl Check {
     fn run(self) -> Result<(), Failure> {
         let scene = read_scene(&self.scene)?;
-        for Overbright { material, sum: Rgb([r, g, b]) } in overbright(&scene) {
-            say(&format!(
-                "warning: material {}: kloc·(ambient + diffuse) + reflect + transmit is \
-                 [{r:.2}, {g:.2}, {b:.2}], above 1: it gives back more light than it gets",
-                scene.materials[material].name
-            ));
+        for bright in overbright(&scene) {
+            say(&format!("warning: {}", bright.sentence(&scene)));
         }
         print(&format!(
             "{}: no mistakes; {} solids, {} materials, {} lights",

@@ -24,9 +24,10 @@ pub use save::Save;
 
 use crate::scene::Scene;
 use crate::scene::check::validate;
+use crate::scene::relative::{relative, resolved};
 use history::{History, same_bits};
 use patch::patch;
-use relocate::{relative, relocate, resolved};
+use relocate::relocate;
 use save::file_name;
 
 /// A scene being edited, with its file and its history.

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use toml::de::DeTable;
 
 use super::history::History;
-use super::relocate::relative;
 use super::save::file_name;
 use super::{Base, Document, DocumentError, FileKind, Missing};
+use crate::scene::relative::relative;
 use crate::scene::{Scene, mesh, read, texture};
 
 impl Document {

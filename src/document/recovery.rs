@@ -159,7 +159,7 @@ impl Snapshot {
 fn make_absolute(scene: &mut Scene, folder: &Path) -> serde_json::Map<String, Value> {
     let mut names = serde_json::Map::new();
     scene.each_file(&mut |file| {
-        let place = super::relocate::resolved(&folder.join(&*file));
+        let place = crate::scene::relative::resolved(&folder.join(&*file));
         if let Some(place) = place.to_str() {
             let old = std::mem::replace(file, place.to_owned());
             names.insert(place.to_owned(), Value::from(old));

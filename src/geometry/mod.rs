@@ -5,6 +5,7 @@
 //! be hit. The answers therefore do not depend on the tree, the SIMD width or the machine. There is
 //! no epsilon with a length in it: a ray that leaves a surface knows which one ([`Leaving`]).
 
+mod all_hits;
 mod binary;
 mod bump;
 mod closed;
@@ -60,7 +61,7 @@ use compile::{Owner, Primitives};
 use hierarchy::Hierarchy;
 pub use hierarchy::Stack;
 pub use parts::parts;
-pub use placement::corners;
+pub use placement::{corners, rotation};
 use query::{Closest, Gather, Shadow};
 use surfaces::Surfaces;
 pub use tone::Tone;

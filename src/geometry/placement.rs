@@ -140,8 +140,8 @@ impl Placed {
     }
 }
 
-/// Rotation about x, then y, then z.
-pub(super) fn rotation(degrees: DVec3) -> DMat3 {
+/// Rotation about x, then y, then z; quarter turns are exact.
+pub fn rotation(degrees: DVec3) -> DMat3 {
     let (sx, cx) = sin_cos_degrees(degrees.x);
     let (sy, cy) = sin_cos_degrees(degrees.y);
     let (sz, cz) = sin_cos_degrees(degrees.z);

@@ -16,6 +16,18 @@ pub struct Overbright {
     pub sum: Rgb,
 }
 
+impl Overbright {
+    /// The same as one sentence.
+    pub fn sentence(&self, scene: &Scene) -> String {
+        let Overbright { material, sum: Rgb([r, g, b]) } = self;
+        format!(
+            "material {}: kloc·(ambient + diffuse) + reflect + transmit is [{r:.2}, {g:.2}, \
+             {b:.2}], above 1: it gives back more light than it gets",
+            scene.materials[*material].name
+        )
+    }
+}
+
 /// Every material of a scene that gives back more than it gets.
 pub fn overbright(scene: &Scene) -> Vec<Overbright> {
     let sums = scene.materials.iter().map(returned).enumerate();

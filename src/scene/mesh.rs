@@ -70,18 +70,17 @@ impl std::error::Error for MeshError {}
 /// at a corner, or has a zero one, gets its geometric normal instead (`z` if it has no area).
 /// A triangle without texture coordinates gets `(0, 0)`. Lines, points and materials are ignored.
 pub fn read_obj(path: &Path) -> Result<Mesh, MeshError> {
-    let fail = |line, column, cause: String, way_out: &str| MeshError {
-        file: path.to_owned(),
-        line,
-        column,
-        cause,
-        way_out: way_out.to_owned(),
-    };
     let bytes = std::fs::read(path).map_err(|error| {
         let cause = format!("cannot be read: {error}");
-        fail(None, None, cause, "check the name; it is relative to the scene file")
+        fault(path, [None; 2], cause, "check the name; it is relative to the scene file")
     })?;
-    let source = String::from_utf8_lossy(&bytes);
+    of_bytes(&bytes, path)
+}
+
+/// [`read_obj`] of what a file held; `path` is named in errors.
+pub fn of_bytes(bytes: &[u8], path: &Path) -> Result<Mesh, MeshError> {
+    let fail = |line, column, cause, way_out: &str| fault(path, [line, column], cause, way_out);
+    let source = String::from_utf8_lossy(bytes);
     let scan = Scan::of(&source)
         .map_err(|fault| fail(Some(fault.line), Some(fault.column), fault.cause, fault.way_out))?;
     if scan.triangles.is_empty() {
@@ -95,6 +94,15 @@ pub fn read_obj(path: &Path) -> Result<Mesh, MeshError> {
     // without `o` and `g` lines there is one model
     let model = models.first().expect("a text with faces has a model");
     Ok(assemble(&model.mesh, &scan.triangles))
+}
+
+fn fault(
+    path: &Path,
+    [line, column]: [Option<usize>; 2],
+    cause: String,
+    way_out: &str,
+) -> MeshError {
+    MeshError { file: path.to_owned(), line, column, cause, way_out: way_out.to_owned() }
 }
 
 /// Puts the mesh together; `corners` says what the file had for each triangle of `source`.

@@ -27,6 +27,7 @@ pub mod range;
 pub mod read;
 mod reader;
 pub mod refine;
+pub(crate) mod relative;
 pub mod seams;
 pub mod slot;
 pub mod texture;

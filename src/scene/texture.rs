@@ -261,11 +261,11 @@ pub fn read(path: &Path) -> Result<Image, ImageError> {
         let way_out = "check the name; it is relative to the scene file";
         fail(format!("cannot be read: {error}"), way_out)
     })?;
-    decode(&bytes).map_err(|cause| fail(cause, "export it again as PNG, JPEG or HDR"))
+    of_bytes(&bytes).map_err(|cause| fail(cause, "export it again as PNG, JPEG or HDR"))
 }
 
-/// The image in the bytes of a file, or what is wrong with them.
-fn decode(bytes: &[u8]) -> Result<Image, String> {
+/// The image in the bytes of a PNG, JPEG or Radiance HDR file, or what is wrong with them.
+pub(crate) fn of_bytes(bytes: &[u8]) -> Result<Image, String> {
     match image::guess_format(bytes) {
         Ok(ImageFormat::Jpeg) => jpeg(bytes),
         Ok(format @ (ImageFormat::Png | ImageFormat::Hdr)) => other(bytes, format),
@@ -383,7 +383,7 @@ mod tests {
     fn written(format: ImageFormat, picture: &DynamicImage) -> Image {
         let mut bytes = Cursor::new(Vec::new());
         picture.write_to(&mut bytes, format).unwrap();
-        decode(bytes.get_ref()).unwrap()
+        of_bytes(bytes.get_ref()).unwrap()
     }
 
     #[test]
@@ -403,7 +403,7 @@ mod tests {
     /// A JPEG of one 8 × 8 block of one colour, made by hand: only DC coefficients, no AC ones.
     #[test]
     fn a_jpeg_is_read() {
-        let image = decode(&tests_jpeg()).unwrap();
+        let image = of_bytes(&tests_jpeg()).unwrap();
         assert_eq!(image.size(), [8, 8]);
         // DC 0: the middle grey, byte 128.
         assert!((grey(&image, 0, [3, 5]) - 0.215_86).abs() < 1e-4);

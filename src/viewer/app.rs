@@ -441,6 +441,7 @@ impl App {
             Command::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
             Command::New(_)
             | Command::Open
+            | Command::Import
             | Command::OpenRecent(_)
             | Command::Save
             | Command::SaveAs

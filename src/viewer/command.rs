@@ -11,6 +11,8 @@ pub(super) enum Command {
     Open,
     /// Opens the recent file with this index.
     OpenRecent(usize),
+    /// Asks for another program's file and makes a scene of it.
+    Import,
     /// Saves to the document's file; asks for one if there is none.
     Save,
     /// Asks for a file and saves to it.
@@ -72,6 +74,7 @@ impl Command {
             Command::New(_) => "New",
             Command::Open => "Open…",
             Command::OpenRecent(_) => "Open recent",
+            Command::Import => "Import…",
             Command::Save => "Save",
             Command::SaveAs => "Save as…",
             Command::Export => "Export picture…",
@@ -106,6 +109,7 @@ impl Command {
             Command::New(_) => "Starts a scene from this template",
             Command::Open => "Opens a scene file",
             Command::OpenRecent(_) => "Opens this file again",
+            Command::Import => "Makes a scene of an OBJ, glTF, GLB or NFF file and opens it",
             Command::Save => "Writes the changed values into the scene file; its comments stay",
             Command::SaveAs => "Saves to another file; paths of meshes are adapted",
             Command::Export => "Writes the picture as PNG or OpenEXR, at its own size or another",
@@ -170,6 +174,7 @@ impl Command {
             Command::Mixer => keys(Modifiers::NONE, Key::L),
             Command::New(_)
             | Command::OpenRecent(_)
+            | Command::Import
             | Command::Keep
             | Command::AddLight
             | Command::AddMaterial

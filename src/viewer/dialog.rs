@@ -7,6 +7,8 @@ use std::time::{Duration, Instant};
 
 use eframe::egui;
 
+use crate::import::ENDINGS;
+
 /// What a file is wanted for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
@@ -22,6 +24,8 @@ pub enum Purpose {
     LocateImage,
     /// An image to show on a surface or as the background.
     Image,
+    /// Another program's file to import.
+    Import,
 }
 
 impl Purpose {
@@ -34,6 +38,7 @@ impl Purpose {
             Purpose::LocateMesh => "Find the mesh",
             Purpose::LocateImage => "Find the image",
             Purpose::Image => "Pick an image",
+            Purpose::Import => "Import a file",
         }
     }
 
@@ -49,6 +54,7 @@ impl Purpose {
             Purpose::Export => ("Pictures", &["png", "exr"]),
             Purpose::LocateMesh => ("Meshes", &["obj"]),
             Purpose::LocateImage | Purpose::Image => ("Images", &["png", "jpg", "jpeg", "hdr"]),
+            Purpose::Import => ("OBJ, glTF and NFF", &ENDINGS),
         }
     }
 }

@@ -11,6 +11,7 @@ use super::app::App;
 use super::command::Command;
 use super::dialog::{Answer, Dialogs, Purpose, Question, with_ending};
 use super::export::ExportForm;
+use super::import::ImportDone;
 use super::inspector::Selection;
 use super::paints::ImageFor;
 use super::path_field::PathField;
@@ -32,6 +33,8 @@ pub(super) enum Next {
     Ask,
     /// Opens a file.
     Open(PathBuf),
+    /// Asks for another program's file and imports it.
+    Import,
     /// Closes the window.
     Quit,
 }
@@ -49,6 +52,10 @@ pub(super) enum For {
     Locate { source: Source, located: Located, missing: String },
     /// To show the image that it holds.
     Image(ImageFor),
+    /// To import it.
+    Import,
+    /// To write the scene of this file of another program to it.
+    ImportTo(PathBuf),
 }
 
 /// What a document is opened from.
@@ -86,6 +93,8 @@ pub(super) enum Modal {
     Changed { save: Save, message: String, next: Option<Next> },
     /// Work of a run that ended without saving it.
     Recover(Vec<Found>),
+    /// Remarks on an import, or why it failed.
+    Imported { failed: bool, text: String },
 }
 
 /// What threads have done.
@@ -108,6 +117,7 @@ pub(super) enum Done {
         place: ImageFor,
         result: Box<Result<Image, ImageError>>,
     },
+    Imported(ImportDone),
 }
 
 /// Files, dialogs and threads of the window.
@@ -152,7 +162,7 @@ impl Files {
     }
 
     /// Asks a question. Found work that is being offered waits until it is answered.
-    fn show(&mut self, modal: Modal) {
+    pub(super) fn show(&mut self, modal: Modal) {
         if let Some(Modal::Recover(found)) = self.modal.replace(modal) {
             self.found = found;
         }
@@ -218,6 +228,7 @@ impl App {
                     self.after_unsaved(ctx, Next::Open(path));
                 }
             }
+            Command::Import => self.after_unsaved(ctx, Next::Import),
             Command::Save => self.save(ctx, None),
             Command::SaveAs => self.ask_save(ctx, None),
             Command::Export => {
@@ -251,6 +262,7 @@ impl App {
             }
             Next::Ask => self.ask(ctx, Purpose::Open, String::new(), For::Open),
             Next::Open(path) => self.open_in_background(ctx, path),
+            Next::Import => self.ask_import(ctx),
             Next::Quit => {
                 self.files.leaving = true;
                 ctx.send_viewport_cmd(ViewportCommand::Close);
@@ -301,7 +313,11 @@ impl App {
         let folder = self.document.path().and_then(Path::parent).map(Path::to_owned);
         let folder = folder.filter(|f| !f.as_os_str().is_empty());
         let folder = folder.or_else(|| std::env::current_dir().ok()).unwrap_or_default();
-        let question = Question { purpose, folder, name };
+        self.ask_question(ctx, Question { purpose, folder, name }, what);
+    }
+
+    /// The same with a folder to begin in.
+    pub(super) fn ask_question(&mut self, ctx: &Context, question: Question, what: For) {
         self.files.dialogs.ask(&question, ctx);
         self.files.asking = Some((question, what));
     }
@@ -319,6 +335,8 @@ impl App {
                 }
             }
             For::Image(place) => self.read_image(ctx, file, place),
+            For::Import => self.ask_import_target(ctx, file),
+            For::ImportTo(source) => self.import(ctx, source, &file),
             For::Locate { source, mut located, missing } => {
                 located.push((missing, file));
                 self.open_source(ctx, source, located);
@@ -393,6 +411,7 @@ impl App {
             }
             Done::Saved { result: Err(error), .. } => self.notices.error(error.message),
             Done::Image { path, place, result } => self.image_read(&path, &place, *result),
+            Done::Imported(done) => self.imported(done),
             Done::Kept(Ok(())) => self.files.discard_recovered(),
             Done::Kept(Err(error)) => {
                 self.notices.error(format!("unsaved work is not kept: {}", error.message));
@@ -438,7 +457,7 @@ impl App {
     }
 
     /// Shows what was opened, unless there were edits since it was asked for: they are not lost.
-    fn opened(&mut self, source: Source, before: &Scene, document: Document) {
+    pub(super) fn opened(&mut self, source: Source, before: &Scene, document: Document) {
         let edited = self.document.is_unsaved() && self.document.scene() != before;
         match source {
             Source::File(path) if edited => self.files.show(Modal::Unsaved(Next::Open(path))),

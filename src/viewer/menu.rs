@@ -129,6 +129,8 @@ fn file_menu(
         .on_hover_text("Files opened or saved before")
     });
     ui.separator();
+    item(ui, Command::Import, chosen);
+    ui.separator();
     item(ui, Command::Save, chosen);
     item(ui, Command::SaveAs, chosen);
     ui.separator();

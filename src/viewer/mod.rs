@@ -12,6 +12,7 @@ mod export;
 mod files;
 mod handles;
 mod hints;
+mod import;
 mod inspector;
 mod keep;
 mod kind;

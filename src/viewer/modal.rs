@@ -6,6 +6,7 @@ use super::app::App;
 use super::dialog::Purpose;
 use super::export::ExportChoice;
 use super::files::{For, Modal, Next, Source};
+use super::import::imported_ui;
 use super::path_field::Choice;
 use crate::document::recovery::Found;
 use crate::document::{FileKind, Missing, Save};
@@ -76,6 +77,10 @@ impl App {
             }
             Modal::Changed { save, message, next } => self.changed_ui(ui, save, message, next),
             Modal::Recover(found) => self.recover_ui(ui, found),
+            Modal::Imported { failed, text } => {
+                let read = imported_ui(ui, failed, &text);
+                (!read).then_some(Modal::Imported { failed, text })
+            }
         });
         // What an answer itself opened comes before the question that was just answered.
         if self.files.modal.is_none() && !(shown.should_close() && closes_lightly(&shown.inner)) {

@@ -1,0 +1,219 @@
+//! Volume, centre of mass and moments of inertia of a solid, by parallel rays, each with its error.
+//!
+//! A solid is looked at alone, unturned, with the middle of its box at the origin. Jittered grids of
+//! rays along the three axes find where it is; moments up to the second are integrated exactly along
+//! each ray. Every cell of a grid gets two independent rays, and how much they differ states the error.
+//! Plain primitives have their closed form beside it.
+
+mod closed_form;
+mod eigen;
+mod grid;
+mod moments;
+mod open;
+mod properties;
+#[cfg(test)]
+mod tests;
+
+use std::fmt;
+
+use glam::DVec3;
+
+use crate::geometry::{Geometry, rotation};
+use crate::progress::{Cancelled, Progress};
+use crate::scene::motion::Motion;
+use crate::scene::{Placement, Scene, Shape};
+use grid::{Found, Grid};
+pub use open::OpenEdge;
+use properties::Frame;
+pub use properties::{Measured, Properties};
+
+/// Cells along an axis of the first grid.
+const FIRST: u32 = 8;
+/// Most cells along an axis: 6·4096² are 10⁸ rays.
+const MOST: u32 = 4096;
+
+/// When to stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Goal {
+    /// As soon as the error of the volume is at most this share of it.
+    Error(f64),
+    /// Before more than this many rays are cast.
+    Rays(u64),
+}
+
+/// How to measure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wishes {
+    /// When to stop.
+    pub goal: Goal,
+    /// Mass per cubic world unit, > 0.
+    pub density: f64,
+    /// Other rays for another one.
+    pub seed: u64,
+}
+
+impl Default for Wishes {
+    fn default() -> Wishes {
+        Wishes { goal: Goal::Error(1e-4), density: 1.0, seed: 0 }
+    }
+}
+
+/// One grid of a measurement; each next one has four times the rays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// Rays of this grid.
+    pub rays: u64,
+    /// What it found.
+    pub volume: Measured,
+}
+
+/// What was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// By the last grid.
+    pub properties: Properties,
+    /// All grids.
+    pub steps: Vec<Step>,
+    /// Whether the error that was wanted is reached; true of a number of rays.
+    pub reached: bool,
+    /// Rays of the last grid whose crossings did not add up.
+    pub torn: u64,
+    /// By formulas, if there are any for this shape.
+    pub exact: Option<Properties>,
+}
+
+impl Report {
+    /// Rays of all grids.
+    pub fn rays(&self) -> u64 {
+        self.steps.iter().map(|step| step.rays).sum()
+    }
+}
+
+/// Why a solid has no mass.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MassError {
+    /// It has no end, as a plane.
+    Endless,
+    /// It has no thickness, as a polygon.
+    Thin,
+    /// It is a mesh with an edge that is not between two triangles.
+    Open(OpenEdge),
+    /// No ray was inside of it.
+    Empty,
+    /// The job was cancelled.
+    Cancelled,
+}
+
+impl fmt::Display for MassError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            MassError::Endless => f.write_str("a plane has no end, and so no mass"),
+            MassError::Thin => f.write_str("a polygon has no thickness, and so no mass"),
+            MassError::Open(edge) => write!(f, "{edge}"),
+            MassError::Empty => f.write_str("no ray was inside of it: it has no volume"),
+            MassError::Cancelled => f.write_str("cancelled"),
+        }
+    }
+}
+
+impl std::error::Error for MassError {}
+
+impl From<Cancelled> for MassError {
+    fn from(_: Cancelled) -> MassError {
+        MassError::Cancelled
+    }
+}
+
+/// Measures a solid of a valid scene where it is as the shutter opens; `news` hears of every grid.
+pub fn measure(
+    scene: &Scene,
+    solid: usize,
+    wishes: Wishes,
+    progress: &Progress,
+    news: &mut dyn FnMut(&Step),
+) -> Result<Report, MassError> {
+    let Wishes { goal, density, seed } = wishes;
+    check(scene, solid)?;
+    let (alone, middle, half) = centred(scene, solid, progress)?;
+    let placement = &scene.solids[solid].placement;
+    let turn = rotation(placement.rotate_degrees);
+    let translation = turn * middle + placement.translate;
+    let frame = Frame { rotation: turn, translation, half };
+    let geometry = Geometry::build(&alone, progress)?;
+    let grid = Grid { geometry: &geometry, half, seed };
+    let (mut steps, mut n) = (Vec::new(), first(goal));
+    loop {
+        let Found { estimate, torn } = grid.cast(n, progress)?;
+        let rays = 6 * u64::from(n).pow(2);
+        let found = properties::properties(&estimate, &frame, density);
+        let volume = found.as_ref().map_or(Measured::default(), |found| found.volume);
+        let step = Step { rays, volume };
+        news(&step);
+        steps.push(step);
+        let done = match goal {
+            Goal::Error(error) => volume.value > 0.0 && volume.error <= error * volume.value,
+            Goal::Rays(most) => (n * 2) > last(most),
+        };
+        if done || n >= MOST {
+            let properties = found.ok_or(MassError::Empty)?;
+            let exact = closed_form::moments(&scene.solids[solid].shape, placement.scale, middle);
+            let exact = exact.and_then(|exact| properties::properties(&exact, &frame, density));
+            return Ok(Report { properties, steps, reached: done, torn, exact });
+        }
+        n *= 2;
+    }
+}
+
+/// Cells along an axis of the first grid.
+fn first(goal: Goal) -> u32 {
+    let Goal::Rays(most) = goal else { return FIRST };
+    let mut n = last(most);
+    while n / 2 >= FIRST && n % 2 == 0 {
+        n /= 2;
+    }
+    n
+}
+
+/// Cells along an axis of the last grid of a number of rays: it and those before it, a third of its
+/// rays together, do not take more. Of the form 2ᵏ times a small number, so that there are some.
+fn last(most: u64) -> u32 {
+    let n = ((most as f64 / 8.0).sqrt() as u32).clamp(2, MOST);
+    let steps = (n / FIRST).max(1).ilog2();
+    (n >> steps) << steps
+}
+
+/// Whether the solid has an inside.
+fn check(scene: &Scene, solid: usize) -> Result<(), MassError> {
+    match &scene.solids[solid].shape {
+        Shape::Plane { .. } => Err(MassError::Endless),
+        Shape::Polygon { .. } => Err(MassError::Thin),
+        Shape::Mesh { file: _, mesh } => {
+            open::open_edge(mesh).map_or(Ok(()), |edge| Err(MassError::Open(edge)))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The solid alone, at rest and unturned, with the middle of its box at the origin; where that was,
+/// and half the sides of the box.
+fn centred(
+    scene: &Scene,
+    solid: usize,
+    progress: &Progress,
+) -> Result<(Scene, DVec3, DVec3), MassError> {
+    let mut own = scene.solids[solid].clone();
+    own.motion = Motion::default();
+    own.placement = Placement { scale: own.placement.scale, ..Placement::default() };
+    let mut alone =
+        Scene { materials: scene.materials.clone(), solids: vec![own], ..Scene::default() };
+    let bounds = |scene: &Scene| -> Result<[DVec3; 2], MassError> {
+        Geometry::build(scene, progress)?.bounds().ok_or(MassError::Empty)
+    };
+    let [low, high] = bounds(&alone)?;
+    let middle = low + (high - low) / 2.0;
+    alone.solids[0].placement.translate = -middle;
+    let [low, high] = bounds(&alone)?;
+    // Rounding may leave the box a little beside the origin.
+    let half = low.abs().max(high.abs());
+    if half.min_element() > 0.0 { Ok((alone, middle, half)) } else { Err(MassError::Empty) }
+}

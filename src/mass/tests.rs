@@ -1,0 +1,329 @@
+//! Measured mass against formulas: errors, their stated size, and what must not matter.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3};
+
+use super::*;
+use crate::scene::mesh::Mesh;
+use crate::scene::{Material, Solid};
+
+fn scene(shape: Shape) -> Scene {
+    let solid = Solid::new("it", shape, 0);
+    Scene { materials: vec![Material::new("m")], solids: vec![solid], ..Scene::default() }
+}
+
+fn measured(scene: &Scene, wishes: Wishes) -> Report {
+    let found = measure(scene, 0, wishes, &Progress::default(), &mut |_| {});
+    found.unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn rays(rays: u64, seed: u64) -> Wishes {
+    Wishes { goal: Goal::Rays(rays), seed, ..Wishes::default() }
+}
+
+fn ball() -> Shape {
+    Shape::Sphere { center: DVec3::ZERO, radius: 1.0 }
+}
+
+/// A closed mesh of triangles, outward counter-clockwise.
+fn mesh(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Shape {
+    let mesh = Arc::new(Mesh { positions, triangles, ..Mesh::default() });
+    Shape::Mesh { file: "m.obj".to_owned(), mesh }
+}
+
+/// The faces of a box whose corners are numbered by the bits of x, y, z.
+const FACES: [[u32; 3]; 12] = [
+    [0, 2, 1],
+    [1, 2, 3],
+    [4, 5, 6],
+    [5, 7, 6],
+    [0, 1, 4],
+    [1, 5, 4],
+    [2, 6, 3],
+    [3, 6, 7],
+    [0, 4, 2],
+    [2, 4, 6],
+    [1, 3, 5],
+    [3, 7, 5],
+];
+
+fn corners(half: DVec3, turn: DMat3) -> Vec<DVec3> {
+    let sign = |i: u32, bit: u32| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
+    (0..8).map(|i| turn * (half * DVec3::new(sign(i, 0), sign(i, 1), sign(i, 2)))).collect()
+}
+
+/// A box as a mesh that is turned about no axis of the grid.
+fn tilted_box(half: DVec3) -> (Shape, DMat3) {
+    let turn =
+        DMat3::from_rotation_z(0.7) * DMat3::from_rotation_x(0.4) * DMat3::from_rotation_y(1.1);
+    (mesh(corners(half, turn), FACES.to_vec()), turn)
+}
+
+/// Numbers in 0 … 1.
+fn random(state: &mut u64) -> f64 {
+    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    (*state >> 11) as f64 / (1u64 << 53) as f64
+}
+
+fn covers(measured: Measured, truth: f64) -> bool {
+    (measured.value - truth).abs() <= measured.error
+}
+
+/// Every number of what was measured, with what it should be.
+fn pairs(found: &Properties, truth: &Properties) -> Vec<(Measured, f64)> {
+    let Properties { volume, mass, center, inertia, principal, axes: _ } = found;
+    let mut pairs = vec![(*volume, truth.volume.value), (*mass, truth.mass.value)];
+    pairs.extend(center.iter().zip(&truth.center).map(|(a, b)| (*a, b.value)));
+    pairs.extend(inertia.iter().zip(&truth.inertia).map(|(a, b)| (*a, b.value)));
+    pairs.extend(principal.iter().zip(&truth.principal).map(|(a, b)| (*a, b.value)));
+    pairs
+}
+
+#[test]
+fn plain_primitives_agree_with_their_closed_forms() {
+    let shapes =
+        [ball(), Shape::Box { min: DVec3::new(1.0, 2.0, 3.0), max: DVec3::new(2.0, 5.0, 3.5) }];
+    for shape in shapes {
+        let is_box = matches!(shape, Shape::Box { .. });
+        let mut scene = scene(shape);
+        scene.solids[0].placement.scale = DVec3::new(1.0, 2.0, 0.5);
+        scene.solids[0].placement.rotate_degrees = DVec3::new(20.0, 50.0, -70.0);
+        scene.solids[0].placement.translate = DVec3::new(3.0, -4.0, 5.0);
+        let report = measured(&scene, Wishes { density: 2.5, ..rays(60_000, 1) });
+        let exact = report.exact.expect("a formula");
+        for (found, truth) in pairs(&report.properties, &exact) {
+            assert!(covers(found, truth), "{found:?}, not {truth}");
+        }
+        let error = (report.properties.volume.value / exact.volume.value - 1.0).abs();
+        assert!(!is_box || error < 1e-12, "every ray of its box is inside of a box: {error}");
+        assert!((exact.mass.value - 2.5 * exact.volume.value).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn closed_forms_are_those_of_the_books() {
+    let report = measured(&scene(ball()), rays(600, 1));
+    let exact = report.exact.expect("a formula");
+    let volume = 4.0 / 3.0 * PI;
+    assert!((exact.volume.value - volume).abs() < 1e-14);
+    for moment in exact.principal {
+        assert!((moment.value - 0.4 * volume).abs() < 1e-14, "2/5 M r²");
+    }
+    let cuboid = Shape::Box { min: DVec3::ZERO, max: DVec3::new(1.0, 2.0, 3.0) };
+    let exact = measured(&scene(cuboid), rays(600, 1)).exact.expect("a formula");
+    // M(b² + c²)/12
+    let wanted = [2.5, 5.0, 6.5];
+    for (found, wanted) in exact.principal.iter().zip(wanted) {
+        assert!((found.value - wanted).abs() < 1e-13, "{found:?}, not {wanted}");
+    }
+    assert_eq!(exact.center.map(|c| c.value), [0.5, 1.0, 1.5]);
+}
+
+#[test]
+fn the_axes_of_a_turned_box_are_found() {
+    let (shape, turn) = tilted_box(DVec3::new(1.0, 2.0, 3.0));
+    let report = measured(&scene(shape), rays(800_000, 3));
+    // The longest side has the smallest moment.
+    let Properties { axes, principal, .. } = report.properties;
+    for (axis, side) in axes.iter().zip([turn.z_axis, turn.y_axis, turn.x_axis]) {
+        let angle = axis.cross(side).length();
+        assert!(angle < 1e-4, "{angle} rad off");
+    }
+    let [a, b, c] = principal.map(|moment| moment.value);
+    assert!(a > 0.0 && a <= b && b <= c && c <= a + b, "{a}, {b}, {c}");
+}
+
+#[test]
+fn where_a_solid_is_does_not_matter() {
+    let (shape, _) = tilted_box(DVec3::new(1.0, 0.3, 0.6));
+    let knot = Shape::Knot { turns: [2, 3], tube: 0.2, segments: [60, 12] };
+    let flake = Shape::Sphereflake { center: DVec3::ZERO, radius: 1.0, levels: 2 };
+    for shape in [shape, knot, flake, ball()] {
+        let mut here = scene(shape);
+        here.solids[0].placement.rotate_degrees = DVec3::new(10.0, 20.0, 30.0);
+        let mut far = here.clone();
+        let offset = DVec3::new(1e6, -3e5, 7e5);
+        far.solids[0].placement.translate = offset;
+        let (a, b) = (measured(&here, rays(20_000, 5)), measured(&far, rays(20_000, 5)));
+        let (a, b) = (a.properties, b.properties);
+        assert!((a.volume.value / b.volume.value - 1.0).abs() < 1e-9);
+        let size = a.principal[2].value;
+        for (a, b) in a.inertia.iter().zip(&b.inertia) {
+            assert!((a.value - b.value).abs() < 1e-9 * size, "{a:?} and {b:?}");
+        }
+        for axis in 0..3 {
+            let moved = b.center[axis].value - offset[axis];
+            assert!((a.center[axis].value - moved).abs() < 1e-9, "{axis}");
+        }
+    }
+}
+
+#[test]
+fn where_the_points_of_a_mesh_are_does_not_matter() {
+    let (shape, turn) = tilted_box(DVec3::new(1.0, 0.3, 0.6));
+    let offset = DVec3::new(1e6, -3e5, 7e5);
+    let moved = corners(DVec3::new(1.0, 0.3, 0.6), turn).iter().map(|p| *p + offset).collect();
+    let a = measured(&scene(shape), rays(20_000, 5)).properties;
+    let b = measured(&scene(mesh(moved, FACES.to_vec())), rays(20_000, 5)).properties;
+    assert!(
+        (a.volume.value / b.volume.value - 1.0).abs() < 1e-8,
+        "points of 1e6 have steps of 1e-10"
+    );
+    assert!((a.principal[0].value / b.principal[0].value - 1.0).abs() < 1e-8);
+}
+
+#[test]
+fn overlapping_parts_count_once() {
+    let flake = Shape::Sphereflake { center: DVec3::ZERO, radius: 1.0, levels: 2 };
+    let report = measured(&scene(flake), rays(200_000, 1));
+    // Nine balls of a third of the radius touch the first.
+    let truth = 4.0 / 3.0 * PI * (1.0 + 9.0 / 27.0);
+    assert!(covers(report.properties.volume, truth), "{:?}", report.properties.volume);
+    // Two boxes of side 2 in one mesh, one moved by (1, 1, 1): they share a cube of 1.
+    let (half, turn) = (DVec3::ONE, DMat3::IDENTITY);
+    let mut positions = corners(half, turn);
+    positions.extend(corners(half, turn).iter().map(|p| *p + DVec3::ONE));
+    let triangles = FACES.iter().copied().chain(FACES.map(|t| t.map(|i| i + 8))).collect();
+    let report = measured(&scene(mesh(positions, triangles)), rays(100_000, 1));
+    assert!(covers(report.properties.volume, 15.0), "{:?}", report.properties.volume);
+}
+
+#[test]
+fn threads_change_no_bit() {
+    let knot = Shape::Knot { turns: [2, 3], tube: 0.2, segments: [60, 12] };
+    let scene = scene(knot);
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| measured(&scene, rays(20_000, 7)))
+    };
+    let (one, three) = (with(1), with(3));
+    assert_eq!(one, three);
+    let bits = |report: &Report| {
+        let numbers = pairs(&report.properties, &report.properties);
+        numbers.iter().map(|(m, _)| [m.value.to_bits(), m.error.to_bits()]).collect::<Vec<_>>()
+    };
+    assert_eq!(bits(&one), bits(&three));
+    assert_ne!(bits(&one), bits(&measured(&scene, rays(20_000, 8))), "another seed, other rays");
+}
+
+/// A tetrahedron at random, with its volume and centre.
+fn tetrahedron(state: &mut u64) -> (Shape, f64, DVec3) {
+    loop {
+        let mut point = || DVec3::new(random(state), random(state), random(state)) * 2.0;
+        let mut p = [point(), point(), point(), point()];
+        let six = (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]);
+        if six < 0.0 {
+            p.swap(2, 3);
+        }
+        if six.abs() > 0.3 {
+            let middle = (p[0] + p[1] + p[2] + p[3]) / 4.0;
+            let faces = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+            return (mesh(p.to_vec(), faces), six.abs() / 6.0, middle);
+        }
+    }
+}
+
+#[test]
+fn the_stated_error_covers_the_truth() {
+    let count = if std::env::var_os("RAYFOREST_LONG").is_some() { 1000 } else { 150 };
+    let mut state = 11;
+    let (mut volumes, mut centers, mut moments) = (0, 0, 0);
+    for seed in 0..count {
+        let (mut scene, volume, own_center) = if seed % 2 == 0 {
+            let (shape, volume, center) = tetrahedron(&mut state);
+            (scene(shape), volume, center)
+        } else {
+            (scene(ball()), 4.0 / 3.0 * PI, DVec3::ZERO)
+        };
+        let placement = &mut scene.solids[0].placement;
+        placement.scale =
+            DVec3::new(random(&mut state), random(&mut state), random(&mut state)) + 0.2;
+        placement.rotate_degrees = DVec3::new(random(&mut state), random(&mut state), 0.5) * 360.0;
+        placement.translate = DVec3::new(random(&mut state), 0.0, -1.0) * 100.0;
+        let Placement { translate, rotate_degrees, scale } = placement.clone();
+        let volume = volume * scale.x * scale.y * scale.z;
+        let center = rotation(rotate_degrees) * (own_center * scale) + translate;
+        let report = measured(&scene, rays(6000, seed));
+        let found = &report.properties;
+        volumes += u32::from(covers(found.volume, volume));
+        centers += u32::from((0..3).all(|axis| covers(found.center[axis], center[axis])));
+        let exact = report.exact.as_ref();
+        moments += u32::from(
+            exact.is_none_or(|exact| pairs(found, exact).iter().all(|(m, t)| covers(*m, *t))),
+        );
+        // An error that covers everything would be worth nothing.
+        assert!(found.volume.error < 0.05 * volume, "{:?}", found.volume);
+    }
+    let least = count as u32 * 95 / 100;
+    assert!(volumes >= least, "{volumes} of {count} volumes");
+    assert!(centers >= least * 98 / 100, "{centers} of {count} centres, in all three coordinates");
+    assert!(moments >= least * 98 / 100, "{moments} of {count} inertias, in all numbers");
+}
+
+/// Root mean square of the relative errors of volumes with n² rays in all, over some seeds.
+fn rms(shape: &Shape, truth: f64, side: u64) -> f64 {
+    let scene = scene(shape.clone());
+    let seeds = 12;
+    let squares = (0..seeds).map(|seed| {
+        // Of the rays of all grids the last one has three quarters.
+        let found = measured(&scene, rays(side * side * 4 / 3, seed)).properties.volume.value;
+        (found / truth - 1.0).powi(2)
+    });
+    (squares.sum::<f64>() / seeds as f64).sqrt()
+}
+
+#[test]
+fn errors_are_as_small_as_the_law_says() {
+    let (cube, _) = tilted_box(DVec3::ONE);
+    // Jittered rays on curved silhouettes and on slanted edges: the error falls with n^-2 for n² rays.
+    for (shape, truth, table) in [(ball(), 4.0 / 3.0 * PI, 8.9e-6), (cube, 8.0, 1.2e-4)] {
+        let at_512 = rms(&shape, truth, 512);
+        assert!(at_512 <= 3.0 * table, "{at_512} against {table}");
+        let (coarse, fine) = (rms(&shape, truth, 64), rms(&shape, truth, 512));
+        let exponent = (fine / coarse).ln() / 8f64.ln();
+        assert!((-2.3..=-1.7).contains(&exponent), "{exponent}");
+    }
+}
+
+#[test]
+fn a_goal_is_reached_or_said_not_to_be() {
+    let mut steps = Vec::new();
+    let wishes = Wishes { goal: Goal::Error(1e-3), ..Wishes::default() };
+    let scene = scene(ball());
+    let report = measure(&scene, 0, wishes, &Progress::default(), &mut |step| steps.push(*step));
+    let report = report.unwrap();
+    assert_eq!(report.steps, steps);
+    assert!(report.reached && steps.len() > 1);
+    let Measured { value, error } = report.properties.volume;
+    assert!(error <= 1e-3 * value);
+    for most in [100, 5_000, 12_345, 60_000] {
+        let report = measured(&scene, rays(most, 0));
+        assert!(report.rays() <= most && report.rays() * 3 > most, "{} of {most}", report.rays());
+    }
+    let progress = Progress::default();
+    progress.cancel();
+    let stopped = measure(&scene, 0, wishes, &progress, &mut |_| {});
+    assert_eq!(stopped, Err(MassError::Cancelled));
+}
+
+#[test]
+fn what_has_no_inside_is_refused() {
+    let refused = |shape: Shape| {
+        measure(&scene(shape), 0, rays(600, 0), &Progress::default(), &mut |_| {})
+            .unwrap_err()
+            .to_string()
+    };
+    assert!(refused(Shape::named("plane")).contains("no end"));
+    assert!(refused(Shape::named("polygon")).contains("no thickness"));
+    let positions = corners(DVec3::ONE, DMat3::IDENTITY);
+    let open = refused(mesh(positions.clone(), FACES[..11].to_vec()));
+    assert_eq!(
+        open,
+        "the mesh is not closed: the edge from (1, 1, -1) to (1, -1, 1) belongs to one triangle alone"
+    );
+    let mut turned = FACES.to_vec();
+    turned[0].swap(0, 1);
+    assert!(refused(mesh(positions, turned)).contains("of opposite sense"));
+}
