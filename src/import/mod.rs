@@ -48,7 +48,7 @@ glTF  meshes of the shown scene with their nodes' places, first camera, KHR_ligh
       transmit with filter, ior and fresnel; emissive factor and strength = emission;
       alphaMode BLEND = kloc and transmit without refraction
 NFF   v = camera, b = background, l = lights.point, f = materials (T = transmit, Ks = specular and
-      reflect), s = spheres, p and pp = meshes
+      reflect), s = spheres, c = cones and cylinders, p and pp = meshes
 A camera and a light are added where there are none.";
 
 /// A scene made of another program's file; nothing is written yet.

@@ -38,7 +38,7 @@ fn what_has_no_mass_is_said_and_a_long_measurement_ends() {
     let mut window = weighing();
     window.click("floor");
     window.click("Measure floor");
-    window.until_text("a plane has no end, and so no mass");
+    window.until_text("it has no end, and so no mass");
     window.click("ball");
     window.type_into("wanted mass error", "0.0000001");
     window.click("Measure ball");
