@@ -64,6 +64,19 @@ fn converting_again_and_elsewhere_gives_the_same_scene() {
 }
 
 #[test]
+fn the_imported_file_is_never_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = folder.path();
+    std::fs::create_dir(root.join("scene-parts")).unwrap();
+    // Its own objects would take its name.
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\no a\nf 1 2 3\no b\nf 3 2 1\n";
+    std::fs::write(root.join("scene-parts/a.obj"), text).unwrap();
+    succeed(root, &["convert", "scene-parts/a.obj", "-o", "scene.toml"]);
+    assert_eq!(std::fs::read_to_string(root.join("scene-parts/a.obj")).unwrap(), text);
+    assert_eq!(names_in(&root.join("scene-parts")), ["a-2.obj", "a.obj", "b.obj"]);
+}
+
+#[test]
 fn what_cannot_be_converted_leaves_nothing_behind() {
     let folder = folder_with(&["trimesh_two.glb", "assimp_scene.obj"]);
     let root = folder.path();

@@ -17,22 +17,22 @@ fn importing(files: &[&str], answers: &[&str]) -> Window {
 #[test]
 fn a_file_is_imported_shown_edited_and_saved() {
     let files = ["assimp_scene.obj", "assimp_scene.mtl"];
-    // A scene without an ending gets one.
-    let mut window = importing(&files, &["assimp_scene.obj", "new"]);
+    // A scene without the ending of one gets it.
+    let mut window = importing(&files, &["assimp_scene.obj", "new.obj"]);
     window.menu(&["File", "Import…"]);
     window.until_text("The file is imported");
     assert!(window.shows("the material `DefaultMaterial` is left out"));
-    let target = window.file("new.toml");
+    let target = window.file("new.obj.toml");
     assert!(window.app().document().path() == Some(&target));
     window.click("Close");
     window.until_exact();
-    assert!(rgb(&window.picture()) == rendered(window.folder.path(), "new.toml"));
+    assert!(rgb(&window.picture()) == rendered(window.folder.path(), "new.obj.toml"));
     window.click("tiles");
     window.type_into("shininess value", "12");
     window.save();
     assert!(std::fs::read_to_string(&target).unwrap().contains("shininess = 12"));
     window.until_exact();
-    assert!(rgb(&window.picture()) == rendered(window.folder.path(), "new.toml"));
+    assert!(rgb(&window.picture()) == rendered(window.folder.path(), "new.obj.toml"));
 }
 
 #[test]
