@@ -37,7 +37,7 @@ pub const ENDINGS: [&str; 4] = ["obj", "gltf", "glb", "nff"];
 
 /// What becomes of what, for people.
 pub const MAPPING: &str = "\
-OBJ   o and usemtl make solids (meshes), mtllib materials; g, s, l, p and curves are left out
+OBJ   o (or else g) and usemtl make solids (meshes), mtllib materials; s, l, p, curves are left out
 MTL   Kd = color·diffuse, Ka = color·ambient, Ks = specular (model blinn), Ns = shininess,
       Ke = emission, Ni = ior, d = kloc and 1 - transmit, Tr = 1 - d, Tf = filter, Pm = metallic,
       map_Kd = texture.image, bump = bump.image;

@@ -80,6 +80,8 @@ fn triangles(imported: &Imported) -> Vec<usize> {
 fn obj_of_other_programs() {
     let found = sample("assimp_scene.obj");
     assert_eq!(triangles(&found), [2, 6]);
+    let names: Vec<&str> = found.scene.solids.iter().map(|s| s.name.as_str()).collect();
+    assert_eq!(names, ["floor", "pyramid"], "groups are objects where there are none");
     let names: Vec<&str> = found.scene.materials.iter().map(|m| m.name.as_str()).collect();
     assert_eq!(names, ["tiles", "glass"]);
     let glass = &found.scene.materials[1];

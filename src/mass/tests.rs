@@ -382,7 +382,7 @@ fn what_has_no_inside_is_refused() {
     assert!(refused(Shape::named("polygon")).contains("no thickness"));
     let positions = corners(DVec3::ONE, DMat3::IDENTITY);
     let open = refused(mesh(positions.clone(), FACES[..11].to_vec()));
-    assert_eq!(open, "the mesh is not closed: see its edge from [1, -1, -1] to [1, 1, -1]");
+    assert_eq!(open, "the mesh is not closed: see its edge from [1, 1, -1] to [1, -1, 1]");
     let mut turned = FACES.to_vec();
     turned[0].swap(0, 1);
     assert!(refused(mesh(positions, turned)).contains("not closed"));
