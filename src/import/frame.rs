@@ -49,6 +49,10 @@ fn bounds(scene: &Scene) -> [DVec3; 2] {
                 take(*center - *radius);
                 take(*center + *radius);
             }
+            Shape::Cylinder { from, to, radius } | Shape::Cone { from, to, radius, tip: _ } => {
+                take(from.min(*to) - *radius);
+                take(from.max(*to) + *radius);
+            }
             _ => {}
         }
     }

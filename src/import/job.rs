@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::mesh_text;
 use super::place::{At, ImportError, Note, Place};
-use crate::scene::relative::relative;
+use crate::scene::relative::{relative, resolved};
 use crate::scene::texture::{self, Image};
 use crate::scene::{ImageFile, Shape, mesh};
 
@@ -156,12 +156,20 @@ impl<'a> Job<'a> {
         let mut name = format!("{scene}-parts/{stem}.{ending}");
         let mut number = 2;
         // File systems may take `A` and `a` for one name.
-        while !self.names.insert(name.to_lowercase()) {
+        while self.is_source(&name) || !self.names.insert(name.to_lowercase()) {
             name = format!("{scene}-parts/{stem}-{number}.{ending}");
             number += 1;
         }
         self.parts.push(Part { name: name.clone(), bytes });
         name
+    }
+}
+
+impl Job<'_> {
+    /// Whether a file beside the scene is the imported one, which must not be written over.
+    fn is_source(&self, name: &str) -> bool {
+        let path = self.target.parent().unwrap_or(Path::new("")).join(name);
+        path.file_name() == self.source.file_name() && resolved(&path) == resolved(self.source)
     }
 }
 
@@ -178,7 +186,11 @@ pub(super) fn of_mesh(error: mesh::MeshError) -> ImportError {
 
 /// Names that are taken: gives each new thing one of its own.
 #[derive(Debug, Default)]
-pub(super) struct Names(HashSet<String>);
+pub(super) struct Names {
+    taken: HashSet<String>,
+    /// Per wish the number that is tried next.
+    next: HashMap<String, usize>,
+}
 
 impl Names {
     /// `wish`, or with a number behind it if that is taken; `kind` in place of an empty wish.
@@ -186,10 +198,10 @@ impl Names {
         let wish: String = wish.trim().chars().filter(|c| !c.is_control()).take(200).collect();
         let wish = if wish.is_empty() { kind.to_owned() } else { wish };
         let mut name = wish.clone();
-        let mut number = 2;
-        while !self.0.insert(name.clone()) {
+        while !self.taken.insert(name.clone()) {
+            let number = self.next.entry(wish.clone()).or_insert(2);
             name = format!("{wish} {number}");
-            number += 1;
+            *number += 1;
         }
         name
     }

@@ -37,7 +37,7 @@ pub const ENDINGS: [&str; 4] = ["obj", "gltf", "glb", "nff"];
 
 /// What becomes of what, for people.
 pub const MAPPING: &str = "\
-OBJ   o and usemtl make solids (meshes), mtllib materials; g, s, l, p and curves are left out
+OBJ   o (or else g) and usemtl make solids (meshes), mtllib materials; s, l, p, curves are left out
 MTL   Kd = color·diffuse, Ka = color·ambient, Ks = specular (model blinn), Ns = shininess,
       Ke = emission, Ni = ior, d = kloc and 1 - transmit, Tr = 1 - d, Tf = filter, Pm = metallic,
       map_Kd = texture.image, bump = bump.image;
@@ -48,7 +48,7 @@ glTF  meshes of the shown scene with their nodes' places, first camera, KHR_ligh
       transmit with filter, ior and fresnel; emissive factor and strength = emission;
       alphaMode BLEND = kloc and transmit without refraction
 NFF   v = camera, b = background, l = lights.point, f = materials (T = transmit, Ks = specular and
-      reflect), s = spheres, p and pp = meshes
+      reflect), s = spheres, c = cones and cylinders, p and pp = meshes
 A camera and a light are added where there are none.";
 
 /// A scene made of another program's file; nothing is written yet.

@@ -309,14 +309,28 @@ impl Reader<'_, '_, '_> {
     /// `c` base, base radius, apex, apex radius.
     fn cone(&mut self) -> Result<(), ImportError> {
         let line = self.line;
-        for _ in 0..2 {
-            self.point("c")?;
-            self.number("c")?;
+        let (from, radius) = (self.point("c")?, self.number("c")?.abs());
+        let (to, tip) = (self.point("c")?, self.number("c")?.abs());
+        let fits = |x: f64| x == 0.0 || fields::LENGTH.contains(x);
+        if from == to || radius == tip && tip == 0.0 || !fits(radius) || !fits(tip) {
+            let cause = "a cone without length or radius";
+            return Err(self.job.error(
+                At::Line(line),
+                cause,
+                "give two ends and a radius above 0",
+            ));
         }
         self.job.note(
             At::Line(line),
-            "a cone or cylinder (`c`) is left out: there is no such solid yet",
+            "cones and cylinders are open in NFF, here their ends are closed",
         );
+        if radius == tip {
+            self.add("cylinder", Shape::Cylinder { from, to, radius });
+        } else if radius > tip {
+            self.add("cone", Shape::Cone { from, to, radius, tip });
+        } else {
+            self.add("cone", Shape::Cone { from: to, to: from, radius: tip, tip: radius });
+        }
         Ok(())
     }
 

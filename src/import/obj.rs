@@ -1,6 +1,6 @@
-//! Wavefront OBJ: one solid per object and material, materials from the MTL files beside it.
+//! Wavefront OBJ: one solid per object (or group, where there are no objects) and material, materials from the MTL files beside it.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -17,6 +17,9 @@ use crate::scene::{Material, Scene, Shape, Solid};
 
 /// The lists that a corner of a face points into.
 const LISTS: [&str; 3] = ["v", "vt", "vn"];
+
+/// More groups than this are no objects: solids are made of materials alone.
+const MOST_GROUPS: usize = 500;
 
 /// A corner: an index from 0 into each of the lists, where it has one.
 type Corner = [Option<usize>; 3];
@@ -108,6 +111,7 @@ fn outline<'a>(job: &mut Job<'_>, text: &'a str, whole: &Mesh) -> Outline<'a> {
     let mut outline = Outline::default();
     let mut groups: HashMap<(String, Option<String>), usize> = HashMap::new();
     let (mut object, mut material) = (String::new(), None::<String>);
+    let objects = object_key(text);
     for (index, line_text) in text.lines().enumerate() {
         let line = index + 1;
         let words = Word::all(line_text, line);
@@ -126,7 +130,7 @@ fn outline<'a>(job: &mut Job<'_>, text: &'a str, whole: &Mesh) -> Outline<'a> {
                 }
                 outline.groups[group].faces.push(face);
             }
-            "o" => object = mtl::rest(line_text, first),
+            key if key == objects => object = mtl::rest(line_text, first),
             "usemtl" => {
                 let name = mtl::rest(line_text, first);
                 if outline.uses.iter().all(|(known, _)| *known != name) {
@@ -151,6 +155,22 @@ fn outline<'a>(job: &mut Job<'_>, text: &'a str, whole: &Mesh) -> Outline<'a> {
         }
     }
     outline
+}
+
+/// What begins an object: `o`, or `g` in a file without any `o` and without too many groups.
+fn object_key(text: &str) -> &'static str {
+    let mut groups = HashSet::new();
+    for line in text.lines() {
+        let mut words = line.split_whitespace();
+        match words.next() {
+            Some("o") => return "o",
+            Some("g") => {
+                groups.insert(words.collect::<Vec<_>>());
+            }
+            _ => {}
+        }
+    }
+    if groups.len() <= MOST_GROUPS { "g" } else { "o" }
 }
 
 /// Remarks on a line that is neither a point, nor a face, nor about materials.

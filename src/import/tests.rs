@@ -80,6 +80,8 @@ fn triangles(imported: &Imported) -> Vec<usize> {
 fn obj_of_other_programs() {
     let found = sample("assimp_scene.obj");
     assert_eq!(triangles(&found), [2, 6]);
+    let names: Vec<&str> = found.scene.solids.iter().map(|s| s.name.as_str()).collect();
+    assert_eq!(names, ["floor", "pyramid"], "groups are objects where there are none");
     let names: Vec<&str> = found.scene.materials.iter().map(|m| m.name.as_str()).collect();
     assert_eq!(names, ["tiles", "glass"]);
     let glass = &found.scene.materials[1];
@@ -365,7 +367,7 @@ fn gltf_materials() {
 
 #[test]
 fn nff_spheres_and_what_is_not_known() {
-    let text = "l 1 2 3 0.5 0.25 1\nf 1 0 0 .5 .2 10 .3 1.5 .1\nQ 7\ns 0 0 0 2\nc\n0 0 0 1\n0 0 1 0.5\n\
+    let text = "l 1 2 3 0.5 0.25 1\nf 1 0 0 .5 .2 10 .3 1.5 .1\nQ 7\ns 0 0 0 2\nc\n0 0 0 0.5\n0 0 1 1\nc 0 0 0 1 0 0 1 1\n\
                 p 4\n0 0 0\n1 0 0\n1 1 0\n0 1 0.5\n";
     let found = import(&folder(&[("a.nff", text.as_bytes())]), "a.nff").unwrap();
     let m = &found.scene.materials[0];
@@ -373,6 +375,10 @@ fn nff_spheres_and_what_is_not_known() {
     assert_eq!(found.scene.lights[0].intensity, Rgb([0.5, 0.25, 1.0]));
     assert_eq!(found.scene.solids[0].shape, Shape::Sphere { center: DVec3::ZERO, radius: 2.0 });
     assert_noted(&found, "a.nff:3:1: `Q` is left out");
-    assert_noted(&found, "a.nff:5: a cone or cylinder (`c`) is left out");
-    assert_eq!(triangles(&found), [0, 2]);
+    assert_noted(&found, "a.nff:5: cones and cylinders are open in NFF");
+    let (from, to) = (DVec3::ZERO, DVec3::Z);
+    let cone = Shape::Cone { from: to, to: from, radius: 1.0, tip: 0.5 };
+    assert_eq!(found.scene.solids[1].shape, cone);
+    assert_eq!(found.scene.solids[2].shape, Shape::Cylinder { from, to, radius: 1.0 });
+    assert_eq!(triangles(&found), [0, 0, 0, 2]);
 }

@@ -1,7 +1,6 @@
 //! Broken files: cut off, bits flipped, false lengths. Every fault has its place, and nothing panics.
 
 use super::tests::{Folder, folder, import, samples};
-use super::*;
 
 /// Cuts of each file, and flips of each file.
 const TRIES: usize = 150;

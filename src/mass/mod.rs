@@ -9,7 +9,6 @@ mod closed_form;
 mod eigen;
 mod grid;
 mod moments;
-mod open;
 mod properties;
 #[cfg(test)]
 mod tests;
@@ -21,9 +20,9 @@ use glam::DVec3;
 use crate::geometry::{Geometry, rotation};
 use crate::progress::{Cancelled, Progress};
 use crate::scene::motion::Motion;
-use crate::scene::{Placement, Scene, Shape};
+use crate::scene::seams::Seams;
+use crate::scene::{Placement, Scene, Shape, Solid};
 use grid::{Found, Grid};
-pub use open::OpenEdge;
 use properties::Frame;
 pub use properties::{Measured, Properties};
 
@@ -92,12 +91,12 @@ impl Report {
 /// Why a solid has no mass.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MassError {
-    /// It has no end, as a plane.
+    /// It has no end, as a plane or a complement.
     Endless,
     /// It has no thickness, as a polygon.
     Thin,
-    /// It is a mesh with an edge that is not between two triangles.
-    Open(OpenEdge),
+    /// It is a mesh that is not closed at the edge between these points, which are in its own space.
+    Open([DVec3; 2]),
     /// No ray was inside of it.
     Empty,
     /// The job was cancelled.
@@ -107,9 +106,13 @@ pub enum MassError {
 impl fmt::Display for MassError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            MassError::Endless => f.write_str("a plane has no end, and so no mass"),
-            MassError::Thin => f.write_str("a polygon has no thickness, and so no mass"),
-            MassError::Open(edge) => write!(f, "{edge}"),
+            MassError::Endless => f.write_str("it has no end, and so no mass"),
+            MassError::Thin => f.write_str("it has no thickness, and so no mass"),
+            MassError::Open([a, b]) => write!(
+                f,
+                "the mesh is not closed: see its edge from [{}, {}, {}] to [{}, {}, {}]",
+                a.x, a.y, a.z, b.x, b.y, b.z
+            ),
             MassError::Empty => f.write_str("no ray was inside of it: it has no volume"),
             MassError::Cancelled => f.write_str("cancelled"),
         }
@@ -187,9 +190,11 @@ fn check(scene: &Scene, solid: usize) -> Result<(), MassError> {
     match &scene.solids[solid].shape {
         Shape::Plane { .. } => Err(MassError::Endless),
         Shape::Polygon { .. } => Err(MassError::Thin),
-        Shape::Mesh { file: _, mesh } => {
-            open::open_edge(mesh).map_or(Ok(()), |edge| Err(MassError::Open(edge)))
-        }
+        Shape::Mesh { file: _, mesh } => match mesh.seams() {
+            Seams::Closed => Ok(()),
+            Seams::Empty => Err(MassError::Empty),
+            Seams::Open(edge) => Err(MassError::Open(edge.map(|i| mesh.positions[i as usize]))),
+        },
         _ => Ok(()),
     }
 }
@@ -201,13 +206,15 @@ fn centred(
     solid: usize,
     progress: &Progress,
 ) -> Result<(Scene, DVec3, DVec3), MassError> {
-    let mut own = scene.solids[solid].clone();
-    own.motion = Motion::default();
-    own.placement = Placement { scale: own.placement.scale, ..Placement::default() };
-    let mut alone =
-        Scene { materials: scene.materials.clone(), solids: vec![own], ..Scene::default() };
+    let mut alone = Scene {
+        materials: scene.materials.clone(),
+        solids: with_operands(scene, solid),
+        ..Scene::default()
+    };
+    let placement = &mut alone.solids[0].placement;
+    *placement = Placement { scale: placement.scale, ..Placement::default() };
     let bounds = |scene: &Scene| -> Result<[DVec3; 2], MassError> {
-        Geometry::build(scene, progress)?.bounds().ok_or(MassError::Empty)
+        Geometry::build(scene, progress)?.bounds().ok_or(MassError::Endless)
     };
     let [low, high] = bounds(&alone)?;
     let middle = low + (high - low) / 2.0;
@@ -216,4 +223,29 @@ fn centred(
     // Rounding may leave the box a little beside the origin.
     let half = low.abs().max(high.abs());
     if half.min_element() > 0.0 { Ok((alone, middle, half)) } else { Err(MassError::Empty) }
+}
+
+/// A solid and all that it is made of, at rest; it comes first.
+fn with_operands(scene: &Scene, solid: usize) -> Vec<Solid> {
+    let mut needed = vec![solid];
+    let mut place = vec![None; scene.solids.len()];
+    place[solid] = Some(0);
+    let mut next = 0;
+    while let Some(&index) = needed.get(next) {
+        next += 1;
+        for &operand in scene.solids[index].shape.operands() {
+            place[operand].get_or_insert_with(|| {
+                needed.push(operand);
+                needed.len() - 1
+            });
+        }
+    }
+    let at_rest = |index: usize| {
+        let mut own = Solid { motion: Motion::default(), ..scene.solids[index].clone() };
+        if let Shape::Csg { operation: _, operands } = &mut own.shape {
+            operands.iter_mut().for_each(|operand| *operand = place[*operand].unwrap_or(0));
+        }
+        own
+    };
+    needed.into_iter().map(at_rest).collect()
 }

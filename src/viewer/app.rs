@@ -12,6 +12,7 @@ use super::files::Files;
 use super::handles::{Handles, Stage};
 use super::inspector::{Known, Outcome, Selection, inspector_ui, paths};
 use super::keep::kept_text;
+use super::mass::MassPanel;
 use super::menu::{MenuState, menu_ui};
 use super::mixer::Mixer;
 use super::navigate::focused;
@@ -54,6 +55,7 @@ pub struct App {
     /// Whether the screen shows something else than it should.
     is_frame_stale: bool,
     pub(super) chart: ChartPanel,
+    pub(super) mass: MassPanel,
     /// The selection whose costs are watched, and how many solids and materials the scene had.
     watched: Option<Vec<String>>,
     /// A gesture of the wheel lasts until then.
@@ -107,6 +109,7 @@ impl App {
             sample_map: false,
             is_frame_stale: false,
             chart: ChartPanel::new(setup.options),
+            mass: MassPanel::new(setup.options),
             watched: None,
             wheel_until: None,
             view: Vec2::ZERO,
@@ -131,6 +134,7 @@ impl App {
         self.bars(ui, &mut commands);
         let step = self.mixer_ui(ui, &mut edited, &mut changed);
         let step = step.or(self.chart_ui(ui, &mut edited, &mut changed));
+        self.mass_ui(ui);
         let outcome = self.panels(ui, &mut edited, &mut commands);
         let pick = outcome.pick.clone();
         changed |= self.apply_outcome(outcome, &mut edited);
@@ -236,6 +240,7 @@ impl App {
                 mixer: self.mixer.open,
                 sample_map: self.sample_map,
                 chart: self.chart.open,
+                mass: self.mass.open,
                 subject: self.subject(),
                 keep: self.keep_offer(),
             };
@@ -430,6 +435,7 @@ impl App {
             Command::Mixer => self.mixer.open = !self.mixer.open,
             Command::SampleMap => self.toggle_sample_map(),
             Command::Chart => self.chart.open = !self.chart.open,
+            Command::Mass => self.mass.open = !self.mass.open,
             Command::AddLight
             | Command::AddMaterial
             | Command::Duplicate

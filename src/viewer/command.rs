@@ -57,6 +57,8 @@ pub(super) enum Command {
     Mixer,
     /// Whether the chart of speed against accuracy shows.
     Chart,
+    /// Whether the panel of mass properties shows.
+    Mass,
     /// Whether the picture shows how many samples its pixels have.
     SampleMap,
     /// Stops the running trace, export or keeping.
@@ -97,6 +99,7 @@ impl Command {
             Command::Handles => "Light handles",
             Command::Mixer => "Light mixer",
             Command::Chart => "Speed and accuracy",
+            Command::Mass => "Mass properties",
             Command::SampleMap => "Sample map",
             Command::Stop => "Stop",
             Command::Resume => "Trace now",
@@ -141,6 +144,7 @@ impl Command {
             Command::Chart => {
                 "Measures samples, depth, cut-off and adaptive step here, and recommends settings"
             }
+            Command::Mass => "Volume, centre of mass and inertia of the selected solid, by rays",
             Command::SampleMap => {
                 "Where adaptive sampling (trace.adaptive) spends its rays: white pixels have all samples"
             }
@@ -180,6 +184,7 @@ impl Command {
             | Command::AddMaterial
             | Command::Assign
             | Command::Chart
+            | Command::Mass
             | Command::SampleMap
             | Command::Resume => None,
         }

@@ -276,6 +276,7 @@ impl App {
         (self.picked, self.renaming) = (None, None);
         self.mixer.forget();
         self.chart.forget();
+        self.mass.forget();
         self.show_opened();
     }
 

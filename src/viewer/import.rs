@@ -40,7 +40,11 @@ impl App {
 
     /// Converts a file in a thread and opens the scene.
     pub(super) fn import(&mut self, ctx: &Context, source: PathBuf, target: &Path) {
-        let target = with_ending(target, Purpose::Save);
+        // Never the imported file itself, whose ending is another.
+        let target = match target.extension() {
+            Some(ending) if ending != "toml" => PathBuf::from(format!("{}.toml", target.display())),
+            _ => with_ending(target, Purpose::Save),
+        };
         let before = Box::new(self.document.scene().clone());
         self.files.work(ctx, move || {
             let result = Box::new(converted(&source, &target));

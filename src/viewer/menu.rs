@@ -26,6 +26,8 @@ pub(super) struct MenuState<'a> {
     pub(super) sample_map: bool,
     /// Whether the chart of speed against accuracy shows.
     pub(super) chart: bool,
+    /// Whether the panel of mass properties shows.
+    pub(super) mass: bool,
     /// What commands about lights and materials are about.
     pub(super) subject: Subject,
     /// Whether what was traced can be kept.
@@ -199,6 +201,7 @@ fn view_menu(
         (Command::Handles, state.handles),
         (Command::Mixer, state.mixer),
         (Command::Chart, state.chart),
+        (Command::Mass, state.mass),
         (Command::SampleMap, state.sample_map),
     ] {
         let button = with_keys(ui, command, command.name()).selected(on);

@@ -17,6 +17,7 @@ mod inspector;
 mod keep;
 mod kind;
 mod lists;
+mod mass;
 pub mod measure;
 mod menu;
 mod mixer;

@@ -4,9 +4,11 @@ mod bad_input;
 mod cache;
 mod chart;
 mod command_line;
+mod convert;
 #[cfg(target_os = "linux")]
 mod display;
 mod killed;
+mod mass;
 mod parts;
 mod window;
 

@@ -181,6 +181,19 @@ fn every_control_of_speed_and_accuracy_has_a_name_and_a_tooltip() {
 }
 
 #[test]
+fn every_control_of_mass_has_a_name_and_a_tooltip() {
+    let mut window = tall();
+    window.click("ball");
+    let before = window.controls();
+    window.menu(&["View", "Mass properties"]);
+    window.harness.run_steps(3);
+    // What moved to make room is not new.
+    let mut others = window.controls();
+    others.retain(|control| before.iter().any(|old| old.name == control.name));
+    window.walk(&others, 4);
+}
+
+#[test]
 fn every_item_of_the_menu_of_a_line_has_a_name_and_a_tooltip() {
     let mut window = tall();
     for (line, least) in [("mirror", 4), ("fill", 3)] {
