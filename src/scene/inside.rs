@@ -274,7 +274,7 @@ mod tests {
         scene.materials[0].transmit = Rgb::BLACK;
         assert_eq!(around(&scene, &[csg(Operation::Union, &[0, 1])]), [1]);
         // What was never checked ends too.
-        let knotted = [csg(Operation::Merge, &[2, 2]), csg(Operation::Merge, &[2])];
+        let knotted = [csg(Operation::Merge, &[2, 2, 1]), csg(Operation::Merge, &[2])];
         assert_eq!(around(&scene, &knotted), [1]);
     }
 }

@@ -126,10 +126,14 @@ impl Composite {
         let all = operation(&scene.solids[solid].shape, false).is_none_or(|(all, _)| all);
         builder.gates.push(Gate::new(all, NO_PARENT));
         builder.add(0, solid, &chain, false, progress)?;
-        let Builder { scene: _, shutter: _, next: _, mut gates, leaves } = builder;
+        let Builder { scene: _, shutter: _, next, mut gates, mut leaves } = builder;
+        for gate in 0..gates.len() {
+            cluster(&mut gates, &mut leaves, gate);
+        }
         finish(&mut gates, &leaves);
         let size = leaves.iter().map(Leaf::size).fold(0.0, f64::max);
-        Ok(Composite { gates, leaves, solid: solid as u32, size })
+        let count = next - first;
+        Ok(Composite { gates, leaves, solid: solid as u32, first, count, size })
     }
 }
 
@@ -184,11 +188,77 @@ impl Builder<'_> {
 
 impl Gate {
     fn new(all: bool, parent: u32) -> Gate {
-        Gate { all, parent, children: Vec::new(), start: 0, bounds: EVERYWHERE }
+        let (bounds, changes) = (EVERYWHERE, EVERYWHERE);
+        Gate { all, parent, children: Vec::new(), start: 0, bounds, changes }
     }
 }
 
 const EVERYWHERE: [DVec3; 2] = [DVec3::NEG_INFINITY, DVec3::INFINITY];
+
+/// A box that holds nothing.
+const NOWHERE: [DVec3; 2] = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+
+/// Leaves of a gate that have no gate in between.
+const MOST_LEAVES: usize = 4;
+
+/// Gathers the many leaves of a gate that a line mostly misses, what is cut out or joined, in gates of
+/// their own by place, which change nothing but that they are left out together.
+fn cluster(gates: &mut Vec<Gate>, leaves: &mut [Leaf], index: usize) {
+    let all = gates[index].all;
+    let children = std::mem::take(&mut gates[index].children);
+    let idle = |child: &Child| match child {
+        Child::Leaf(leaf) => leaves[*leaf as usize].complement == all,
+        Child::Gate(_) => false,
+    };
+    let (mut idle, mut others): (Vec<Child>, Vec<Child>) = children.into_iter().partition(idle);
+    if idle.len() <= MOST_LEAVES {
+        others.append(&mut idle);
+    } else {
+        others.extend(clustered(gates, leaves, index as u32, idle));
+    }
+    gates[index].children = others;
+}
+
+/// Gates below `parent` of a few leaves each.
+fn clustered(
+    gates: &mut Vec<Gate>,
+    leaves: &mut [Leaf],
+    parent: u32,
+    mut children: Vec<Child>,
+) -> Vec<Child> {
+    let gate = gates.len() as u32;
+    if children.len() <= MOST_LEAVES {
+        for child in &children {
+            if let Child::Leaf(leaf) = child {
+                leaves[*leaf as usize].gate = gate;
+            }
+        }
+        let new = Gate::new(gates[parent as usize].all, parent);
+        gates.push(Gate { children, ..new });
+        return vec![Child::Gate(gate)];
+    }
+    let middle = |child: &Child| match child {
+        // What has no end comes last.
+        Child::Leaf(leaf) => {
+            let [lo, hi] = leaves[*leaf as usize].bounds;
+            let middle = (lo + hi) * 0.5;
+            if middle.is_finite() { middle } else { DVec3::INFINITY }
+        }
+        Child::Gate(_) => DVec3::INFINITY,
+    };
+    let middles = children.iter().map(middle).filter(|middle| middle.is_finite());
+    let [lo, hi] = middles.fold(NOWHERE, |[a, b], m| [a.min(m), b.max(m)]);
+    let extent = hi - lo;
+    let axis = (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b])).unwrap_or(0);
+    children.sort_by(|a, b| middle(a)[axis].total_cmp(&middle(b)[axis]));
+    let upper = children.split_off(children.len() / 2);
+    let new = Gate::new(gates[parent as usize].all, parent);
+    gates.push(new);
+    let mut halves = clustered(gates, leaves, gate, children);
+    halves.extend(clustered(gates, leaves, gate, upper));
+    gates[gate as usize].children = halves;
+    vec![Child::Gate(gate)]
+}
 
 /// Orders children, and finds out what is there at the beginning and where, children first.
 fn finish(gates: &mut [Gate], leaves: &[Leaf]) {
@@ -196,28 +266,30 @@ fn finish(gates: &mut [Gate], leaves: &[Leaf]) {
         let of = |child: &Child| match child {
             Child::Leaf(leaf) => {
                 let leaf = &leaves[*leaf as usize];
-                (leaf.complement, if leaf.complement { EVERYWHERE } else { leaf.bounds })
+                let bounds = if leaf.complement { EVERYWHERE } else { leaf.bounds };
+                (leaf.complement, bounds, leaf.bounds)
             }
             Child::Gate(gate) => {
                 let gate = &gates[*gate as usize];
-                (gate.is_there_first(), gate.bounds)
+                (gate.is_there_first(), gate.bounds, gate.changes)
             }
         };
         let all = gates[i].all;
-        let known: Vec<(bool, [DVec3; 2])> = gates[i].children.iter().map(of).collect();
-        let mut bounds = known.iter().map(|(_, bounds)| *bounds);
-        let bounds = match all {
-            true => bounds.fold(EVERYWHERE, |[a, b], [lo, hi]| [a.max(lo), b.min(hi)]),
-            false => {
-                let first = bounds.next().unwrap_or(EVERYWHERE);
-                bounds.fold(first, |[a, b], [lo, hi]| [a.min(lo), b.max(hi)])
-            }
-        };
-        let start = known.iter().filter(|(there, _)| *there).count() as i32;
+        let known: Vec<(bool, [DVec3; 2], [DVec3; 2])> = gates[i].children.iter().map(of).collect();
+        let around = |[a, b]: [DVec3; 2], [lo, hi]: [DVec3; 2]| [a.min(lo), b.max(hi)];
+        let within = |[a, b]: [DVec3; 2], [lo, hi]: [DVec3; 2]| [a.max(lo), b.min(hi)];
+        let bounds = known.iter().map(|(_, bounds, _)| *bounds);
+        let bounds =
+            if all { bounds.fold(EVERYWHERE, within) } else { bounds.fold(NOWHERE, around) };
+        let changes = known.iter().map(|(_, _, changes)| *changes).fold(NOWHERE, around);
+        let start = known.iter().filter(|(there, _, _)| *there).count() as i32;
         let mut order: Vec<usize> = (0..known.len()).collect();
         let is_gate = |child: &Child| matches!(child, Child::Gate(_));
         order.sort_by_key(|&k| (known[k].0, is_gate(&gates[i].children[k])));
         let children = order.into_iter().map(|k| gates[i].children[k]).collect();
-        gates[i] = Gate { children, start, bounds, ..Gate::new(all, gates[i].parent) };
+        let gate = Gate { children, start, bounds, changes, ..Gate::new(all, gates[i].parent) };
+        // What is not there at first is there only in its bounds.
+        let changes = if gate.is_there_first() { changes } else { within(changes, bounds) };
+        gates[i] = Gate { changes, ..gate };
     }
 }

@@ -33,6 +33,8 @@ pub(in crate::geometry) struct Leaf {
     pub(super) number: u32,
     /// The gate that it is a child of.
     pub(super) gate: u32,
+    /// How many primitives it has.
+    count: u32,
     /// Number of its first primitive.
     pub(in crate::geometry) first: u32,
     /// Its index in `Scene::solids`.
@@ -90,6 +92,7 @@ impl Leaf {
             complement,
             number,
             gate,
+            count: primitives.count() as u32,
             first,
             solid: solid as u32,
             rest: Geometry {
@@ -103,7 +106,7 @@ impl Leaf {
 
     /// How many primitives it has.
     pub(in crate::geometry) fn count(&self) -> u32 {
-        self.rest.primitives.count() as u32
+        self.count
     }
 
     /// The largest coordinate of its box, 0 if it is infinite.

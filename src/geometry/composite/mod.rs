@@ -26,6 +26,10 @@ pub(super) struct Composite {
     pub(super) leaves: Vec<Leaf>,
     /// Its index in `Scene::solids`.
     pub(super) solid: u32,
+    /// Number of its first primitive.
+    first: u32,
+    /// How many primitives it has.
+    count: u32,
     /// No coordinate of the leaves' surfaces is larger, but those of planes.
     size: f64,
 }
@@ -44,6 +48,8 @@ struct Gate {
     start: i32,
     /// World corners of a box around it, infinite where it is.
     bounds: [DVec3; 2],
+    /// The same of a box beyond which it is what it is at first.
+    changes: [DVec3; 2],
 }
 
 /// The parent of the whole.

@@ -107,7 +107,7 @@ impl Composite {
             size: self.size + ray.origin.abs().max_element(),
         };
         if sight.gate(0, Clip { from: 0.0, to: query.limit() }).is_some() {
-            sight.gather_at_start();
+            sight.sort();
             sight.offer(query);
         }
     }
@@ -119,7 +119,7 @@ impl Sight<'_> {
     fn gate(&mut self, index: u32, mut clip: Clip) -> Option<Clip> {
         let whole = self.whole;
         let gate = &whole.gates[index as usize];
-        self.slab(gate.bounds, clip)?;
+        self.slab(gate.changes, clip)?;
         let begin = self.lists.events.len();
         let mut reach = if gate.all { clip } else { Clip::NOTHING };
         let mut changes = false;
@@ -239,6 +239,18 @@ impl Sight<'_> {
     }
 
     /// Sorts all crossings; those that cannot be told from the one that the ray starts on are at 0.
+    fn sort(&mut self) {
+        // −0 is 0 here.
+        self.lists.events.iter_mut().for_each(|event| event.t += 0.0);
+        if self.departure.start_in(self.whole.first, self.whole.count, false) != Start::Elsewhere {
+            self.gather_at_start();
+        }
+        let order = |a: &Event, b: &Event| a.t.total_cmp(&b.t).then(a.primitive.cmp(&b.primitive));
+        self.lists.events.sort_unstable_by(order);
+    }
+
+    /// Puts crossings that cannot be told from the one that the ray starts on at 0.
+    #[cold]
     fn gather_at_start(&mut self) {
         let mut events = std::mem::take(&mut self.lists.events);
         let left = |event: &&Event| {
@@ -253,10 +265,6 @@ impl Sight<'_> {
                 }
             }
         }
-        let order = |a: &Event, b: &Event| a.t.total_cmp(&b.t).then(a.primitive.cmp(&b.primitive));
-        // −0 is 0 here.
-        events.iter_mut().for_each(|event| event.t += 0.0);
-        events.sort_unstable_by(order);
         self.lists.events = events;
     }
 
