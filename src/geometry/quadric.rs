@@ -56,9 +56,12 @@ impl Quadric {
         let o = o - self.middle;
         let mut spans = match start {
             Start::Elsewhere => {
+                let (first, last) = self.faces(o, d);
+                if first >= last {
+                    return Spans::NONE;
+                }
                 let shift = -o.dot(d) / d.length_squared();
                 let p = o + d * shift;
-                let (first, last) = self.faces(o, d);
                 let bend = d.dot(self.a * d);
                 let slope = d.dot(self.gradient(p));
                 let below = below(bend, slope, self.value(p), self.discriminant(p, d, bend));
