@@ -398,7 +398,8 @@ mod tests {
         for (lines, expected) in [
             (
                 "",
-                "`solids.a` needs one of `sphere`, `plane`, `box`, `polygon`, `mesh`, `knot`, `sphereflake`",
+                "`solids.a` needs one of `sphere`, `plane`, `box`, `cylinder`, `cone`, `torus`, \
+                 `ellipsoid`, `quadric`, `prism`, `polygon`, `mesh`, `knot`, `sphereflake`",
             ),
             ("sphere = 3", "`sphere` must be a table, found the whole number 3"),
             ("sphere = { center = [0, 0, 0] }", "`solids.a.sphere` needs the key `radius`"),
