@@ -113,6 +113,11 @@ impl Splice {
         }
         let whole = (value.span.clone(), new.to_owned());
         let ValueKind::Array(written) = &value.kind else { return edits.push(whole) };
+        // One loop of an outline is a list of points, several are a list of lists.
+        let depth = |text: &str| text.bytes().take_while(|byte| *byte == b'[').count();
+        if depth(old) != depth(new) && depth(old).max(depth(new)) > 1 {
+            return edits.push(whole);
+        }
         let Some((old, new)) = elements(old, written.len()).zip(elements(new, written.len()))
         else {
             return edits.push(whole);

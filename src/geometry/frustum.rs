@@ -87,11 +87,12 @@ impl Frustum {
 
     /// Where a line that goes in, or out, at 0 is inside: the interval begins, or ends, with 0.
     fn interval_from_surface(&self, o: DVec3, d: DVec3, inward: bool) -> (f64, f64) {
+        // As where surfaces are told apart, but of a ray along an end that rounding put outside.
+        let (first, last) =
+            slab([0.0, self.height], o.z, d.z).unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
         let o = DVec3::new(o.x, o.y, o.z.clamp(0.0, self.height));
         let from_axis = o.truncate().length();
         let off_side = (from_axis - self.radius(o.z)).abs();
-        let (first, last) =
-            slab([0.0, self.height], o.z, d.z).unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
         let (low, high) = if off_side < o.z.min(self.height - o.z) {
             let (flat, slope) = (d.truncate(), self.slope() * d.z);
             let a = flat.length_squared() - slope * slope;

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::primitive::Start;
+use super::primitive::{Start, cuboid_faces};
 use super::spans::{slab, start_on_surface};
 
 /// All points between two heights over a region of the plane: where an odd number of loops is around.
@@ -89,6 +89,9 @@ impl Prism {
         all: bool,
         mut offer: impl FnMut(f64),
     ) {
+        if start == Start::Elsewhere && self.is_far_from(o, d) {
+            return;
+        }
         let (mut first, mut second, mut count) = (f64::INFINITY, f64::INFINITY, 0usize);
         self.each(o, d, |t| {
             if t > 0.0 {
@@ -117,6 +120,13 @@ impl Prism {
                 }
             });
         }
+    }
+
+    /// Whether a ray misses the box around it: most rays that come here do.
+    #[inline(always)]
+    fn is_far_from(&self, o: DVec3, d: DVec3) -> bool {
+        let (first, last) = cuboid_faces(o, d, &self.bounds());
+        !(first.0 <= last.0 && last.0 > 0.0)
     }
 
     /// Calls `found` with every crossing of the line, in no order.

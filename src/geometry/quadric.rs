@@ -56,15 +56,18 @@ impl Quadric {
         let o = o - self.middle;
         let mut spans = match start {
             Start::Elsewhere => {
+                let (first, last) = self.faces(o, d);
+                if first >= last {
+                    return Spans::NONE;
+                }
                 let shift = -o.dot(d) / d.length_squared();
                 let p = o + d * shift;
-                let (first, last) = self.faces(o, d);
                 let bend = d.dot(self.a * d);
                 let slope = d.dot(self.gradient(p));
                 let below = below(bend, slope, self.value(p), self.discriminant(p, d, bend));
                 within((first, last), shift, below)
             }
-            Start::Inside | Start::Outside => self.from_surface(o, d, start == Start::Inside),
+            Start::Inside | Start::Outside => self.leaving_surface(o, d, start == Start::Inside),
         };
         spans.start_on_surface(start);
         spans
@@ -76,13 +79,16 @@ impl Quadric {
     }
 
     /// The crossings of a ray from its surface: the root 0 is known, or it is a face of the box.
-    fn from_surface(&self, o: DVec3, d: DVec3, inward: bool) -> Spans {
+    fn leaving_surface(&self, o: DVec3, d: DVec3, inward: bool) -> Spans {
         let off_box = (o.abs() - self.half).abs();
-        let o_in = o.clamp(-self.half, self.half);
         let gradient = self.gradient(o);
         let steep = 2.0 * gradient.length();
         let on_quadric = self.value(o).abs() < off_box.min_element() * steep;
-        let (first, last) = self.faces(o_in, d);
+        let (first, last) = match self.faces(o, d) {
+            faces if faces.0 < faces.1 => faces,
+            // Rounding put it outside.
+            _ => self.faces(o.clamp(-self.half, self.half), d),
+        };
         let bend = d.dot(self.a * d);
         if on_quadric {
             let below = below_from_surface(bend, d.dot(gradient), inward);
@@ -90,9 +96,7 @@ impl Quadric {
         }
         let slope = d.dot(gradient);
         let below = below(bend, slope, self.value(o), self.discriminant(o, d, bend));
-        // The face is where one of the two ends is nearest to 0.
-        let ends = if first.abs() < last.abs() { (0.0, last) } else { (first, 0.0) };
-        within(ends, 0.0, below)
+        within(if inward { (0.0, last) } else { (first, 0.0) }, 0.0, below)
     }
 
     /// b² − ac of the function along a line through `p`, from the line's moment about the middle.

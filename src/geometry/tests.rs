@@ -152,7 +152,7 @@ fn bodies() -> Vec<Solid> {
         one.placement.translate = random.in_cube() * 4.0;
         one.placement.rotate_degrees = random.in_cube() * 90.0;
         one.placement.scale = DVec3::splat(0.4 + 0.3 * random.signed());
-        if i % 4 == 0 {
+        if i.is_multiple_of(4) {
             one.placement.scale.y *= 1.5;
         }
         one
@@ -239,7 +239,10 @@ fn powers_of_two_change_no_bit() {
     let mut solids = boxes();
     solids.push(mesh_solid(knot()));
     solids.extend(flake());
-    solids.extend(bodies());
+    for mut body in bodies().into_iter().take(12) {
+        body.placement.translate = DVec3::ZERO;
+        solids.push(body);
+    }
     let one = build(solids.clone());
     let targets = targets(&one);
     let mut stack = Stack::new(&one);

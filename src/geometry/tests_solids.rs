@@ -157,7 +157,7 @@ fn ray(random: &mut Random) -> (DVec3, DVec3) {
 /// What is wrong with a list of crossings of a line by the solid's own function; the distance within
 /// which rounding may decide otherwise is `margin`.
 fn fault(ends: &[f64], o: DVec3, d: DVec3, inside: &Inside, margin: f64) -> Option<String> {
-    if ends.len() % 2 != 0 || ends.iter().any(|t| t.is_nan()) {
+    if !ends.len().is_multiple_of(2) || ends.iter().any(|t| t.is_nan()) {
         return Some(format!("{ends:?}"));
     }
     if ends.windows(2).any(|pair| pair[0] > pair[1]) {
@@ -298,7 +298,7 @@ fn quadrics_rims_and_the_apex_are_crossed_twice_or_not_at_all() {
         let d = (target - o).normalize_or(DVec3::X);
         let mut ends = vec![];
         solid.crossings(o, d, Start::Elsewhere, &mut ends);
-        assert!(ends.len() == 0 || ends.len() == 2, "{ends:?}");
+        assert!(ends.is_empty() || ends.len() == 2, "{ends:?}");
         counts[ends.len() / 2] += 1;
     }
     assert!(counts[0] > 1000 && counts[1] > 1000, "{counts:?}");
@@ -410,7 +410,10 @@ fn fuzz_no_numbers_make_an_odd_count() {
         for (name, crossings) in solids {
             let ends = crossings(o, d, start);
             let sorted = ends.windows(2).all(|pair| pair[0] <= pair[1]);
-            assert!(ends.len() % 2 == 0 && sorted, "{name}: {ends:?} {o:?} {d:?} {start:?}");
+            assert!(
+                ends.len().is_multiple_of(2) && sorted,
+                "{name}: {ends:?} {o:?} {d:?} {start:?}"
+            );
         }
     }
 }

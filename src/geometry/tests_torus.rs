@@ -293,7 +293,6 @@ fn nanoseconds_per_ray(rays: &[(DVec3, DVec3)], solve: impl Fn(DVec3, DVec3) -> 
 /// lens where a tube without a hole overlaps itself counts as wrong.
 #[test]
 #[ignore = "a chart: it measures time"]
-#[expect(clippy::print_stdout, reason = "it is what the chart is for")]
 fn torus_solvers_side_by_side() {
     let solvers: [(&str, Solver); 3] = [
         ("between turning points", ours),

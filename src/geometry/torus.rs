@@ -54,7 +54,7 @@ impl Torus {
             }
             Start::Inside | Start::Outside => {
                 let inward = start == Start::Inside;
-                let mut spans = self.from_surface(Line { p: o, d }, inward, |s| s / length);
+                let mut spans = self.leaving_surface(Line { p: o, d }, inward, |s| s / length);
                 spans.start_on_surface(start);
                 spans
             }
@@ -98,7 +98,7 @@ impl Torus {
     }
 
     /// The crossings of a line that goes through the surface at 0: the quartic without that root.
-    fn from_surface(&self, line: Line, inward: bool, t: impl Fn(f64) -> f64) -> Spans {
+    fn leaving_surface(&self, line: Line, inward: bool, t: impl Fn(f64) -> f64) -> Spans {
         let (low, high) = self.reach_around(&line);
         let Line { p, d } = line;
         let (r2, n) = (self.major * self.major, p.dot(d));

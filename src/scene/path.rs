@@ -285,7 +285,8 @@ mod tests {
             (scene.solids[2].placement.scale, scene.solids[2].material),
             (DVec3::splat(2.0), 1)
         );
-        assert_eq!(scene.solids[5].material, 1);
+        let knot = scene.solids.iter().find(|solid| solid.name == "knot").unwrap();
+        assert_eq!(knot.material, 1);
     }
 
     #[test]
