@@ -54,7 +54,8 @@ pub struct Options {
     /// Bytes that trees, matrix and highlight lists may take together. Not counted: the geometry,
     /// the list of terms, each thread's scratch (a few tiles), and, while a scene is traced again,
     /// the matrix before it, which is held so that a cancel costs nothing, and that of a preview;
-    /// while pixels are grown again, what they replace.
+    /// while pixels are grown again, what they replace, and, where sampling is adaptive, a quarter as
+    /// much for the samples by which is decided.
     pub memory: u64,
 }
 

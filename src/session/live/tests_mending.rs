@@ -80,6 +80,32 @@ fn pixels_beside_a_plan_are_final_from_the_first_picture_on() {
     assert!(!same_beside(&plan, &other, expected.frame()).0, "other pixels are found");
 }
 
+/// A branch that dies leaves its pixels, and their neighbours, with other numbers of samples.
+#[test]
+fn numbers_of_samples_change_in_pending_pixels_alone() {
+    let scene = with(&scene("whitted", [400, 225], 12), "trace.adaptive", "0.1");
+    let edited = with(&scene, "materials.mirror.reflect", "0");
+    let plan = plan(&scene, &edited);
+    let expected = fresh(&edited);
+    assert!(expected.sample_map() != fresh(&scene).sample_map());
+    let mut window = Window::showing(&scene);
+    window.want(&edited);
+    let seen = pictures(&mut window);
+    assert!(!seen.is_empty(), "a picture while pixels are pending");
+    for (shown, _) in &seen {
+        let (same, count) = same_beside(&plan, &shown.frame, expected.frame());
+        assert!(same && count > 500, "{count} pixels that the plan does not name");
+    }
+    window.shows_whole(&edited);
+    assert_eq!(window.last().pixels, plan.pixels());
+    for value in ["0.7", "0.05", "0.6", "0", "0.3"] {
+        window.want(&with(&scene, "materials.mirror.reflect", value));
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    window.wait("the last of them", |w| w.status.in_step);
+    window.shows_whole(&with(&scene, "materials.mirror.reflect", "0.3"));
+}
+
 #[test]
 fn a_cancel_leaves_all_trees_as_they_were_and_resume_goes_on() {
     let scene = slow();

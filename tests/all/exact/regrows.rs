@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use rayforest::film::layout::{LANES, Place, TILE_BLOCKS};
+use rayforest::forest::counts::SampleMap;
 use rayforest::forest::kept::{KeptStart, KeptTrees};
 use rayforest::forest::tree::{Branch, Reader};
 use rayforest::progress::Progress;
@@ -214,6 +215,19 @@ fn untouched(before: &[Option<Arc<KeptTrees>>], session: &Session, plan: &Plan, 
     }
 }
 
+/// Holds that pixels that a plan does not name have as many samples as before.
+fn counted_alike(before: Option<Arc<SampleMap>>, session: &Session, plan: &Plan, what: &str) {
+    let (Some(before), Some(after)) = (before, session.sample_map()) else { return };
+    for tile in 0..session.transport().layout.tiles() {
+        let named = plan.tiles.iter().find(|planned| planned.tile == tile);
+        let counts = before.tile(tile).iter().zip(after.tile(tile)).enumerate();
+        for (at, _) in counts.filter(|(_, (old, new))| old != new) {
+            let lanes = named.map_or(0, |planned| planned.lanes[at / LANES]);
+            assert!(lanes >> (at % LANES) & 1 != 0, "{what}: tile {tile}, place {at}");
+        }
+    }
+}
+
 /// Makes an edit, sometimes cancelled first, and holds picture, class and pixels.
 fn step(session: &mut Session, scene: &Scene, random: &mut Random, what: &str) -> Class {
     if random.below(4) == 0 {
@@ -221,7 +235,7 @@ fn step(session: &mut Session, scene: &Scene, random: &mut Random, what: &str) -
     }
     let beforehand = session.class_of(scene);
     let planned = plan(session, scene);
-    let before = session.forest().tiles.clone();
+    let (before, map) = (session.forest().tiles.clone(), session.sample_map());
     let whole = before.iter().all(Option::is_some);
     let old = session.shared_scene();
     let report = match session.edit(scene.clone(), &Progress::default()) {
@@ -248,6 +262,7 @@ fn step(session: &mut Session, scene: &Scene, random: &mut Random, what: &str) -
             let times = if plan.unsettled.is_some() && !whole { 2 } else { 1 };
             assert!(report.rays.total() <= times * fresh.trace_report().rays.total(), "{what}");
             untouched(&before, session, plan, what);
+            counted_alike(map, session, plan, what);
         }
         None => assert_eq!((report.pixels, report.rays.total()), (0, 0), "{what}"),
     }
