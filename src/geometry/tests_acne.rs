@@ -28,7 +28,7 @@ fn convex() -> Vec<(&'static str, Solid)> {
         squares: DVec3::ZERO,
         products: DVec3::ZERO,
         linear: DVec3::new(1.0, 2.0, 1.0),
-        constant: -0.7,
+        constant: -1.2,
         min: -corner,
         max: corner,
     };
@@ -42,7 +42,7 @@ fn convex() -> Vec<(&'static str, Solid)> {
         ("cylinder", turned(solid(Shape::named("cylinder")), DVec3::new(0.6, 0.6, 0.9))),
         ("cone", turned(solid(Shape::named("cone")), DVec3::ONE)),
         ("truncated cone", solid(cone)),
-        ("stretched cone", turned(solid(Shape::named("cone")), DVec3::new(1.0, 0.5, 0.8))),
+        ("stretched cone", turned(solid(Shape::named("cone")), DVec3::new(1.0, 0.8, 0.9))),
         ("block of a quadric", turned(solid(half_space), DVec3::ONE)),
         ("prism", turned(solid(Shape::Prism { outline, bottom: -0.8, top: 0.9 }), DVec3::ONE)),
         ("cube of triangles", turned(mesh_solid(triangle_cube()), DVec3::ONE)),
