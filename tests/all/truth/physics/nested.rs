@@ -42,10 +42,11 @@ fn met(scene: Scene) -> Vec<u32> {
 /// Rays that left a solid which they were not in.
 fn lost(scene: &Scene) -> u64 {
     let progress = Progress::default();
-    let geometry = Geometry::build(scene, &progress).unwrap();
+    let geometry = Geometry::build(scene, &progress).expect("nobody cancels");
     let grower = Grower::new(scene, &geometry);
     let mut worker = grower.worker();
-    grower.block(&mut worker, (0, 0), &mut Discard, usize::MAX, &progress).unwrap();
+    let grown = grower.block(&mut worker, (0, 0), &mut Discard, usize::MAX, &progress);
+    assert_eq!(grown, Ok(()));
     worker.rays.lost
 }
 
