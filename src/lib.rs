@@ -30,11 +30,17 @@
 //! * **Kept trees answer rays.** A kept tree holds what rays met, a primitive and a distance per node,
 //!   a solid per shadow crossing, and nothing that depends on parameters. Growing reads it: a ray that
 //!   it knows is not cast, and everything else, normals, media, cosines, is computed again by the one
-//!   code that a first trace runs. An edit that shading cannot follow is a
+//!   code that a first trace runs. Where surfaces coincide, or one inside a solid of higher priority is
+//!   passed, a node says so, and its ray's crossings are looked at once more. An edit that shading cannot follow is a
 //!   [`Plan`](session::plan::Plan): the pixels concerned, found in the matrix and the frontier; only
 //!   their blocks are grown and folded again, and put into the matrix when all are done. Where an edit
 //!   wakes branches or moves lights, it names a [`Scope`](forest::scope::Scope), the terms that get
 //!   other coefficients: nothing else of the trees is read, and all other rows stay.
+//! * **Solids made of others** are one entry of the hierarchy. Their leaves are primitives with numbers
+//!   of their own, which belong to the operand's solid: trees, materials and textures know nothing of
+//!   operations. A whole line's crossings are merged, those that f64 cannot tell apart at once, so that
+//!   the laws of the algebra hold to the bit. For what is refracted the whole is one medium, that of the
+//!   operand by which it was entered.
 //! * **Samples** depend on the pixel, their index, the effect and the branch alone. Where sampling is
 //!   adaptive, a [`SampleMap`](forest::counts::SampleMap) follows from what every pixel's first samples
 //!   saw: a function of the scene. A sample of a pixel that has few weighs more; that is all that folding

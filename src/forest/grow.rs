@@ -67,7 +67,7 @@ pub struct Grower<'a> {
     /// Per solid whether it lets light through.
     pub(super) clear: Vec<bool>,
     /// Whether the eye may be in something clear.
-    surrounded: bool,
+    pub(super) surrounded: bool,
     /// Per material, whether Fresnel weighs its branches.
     weighing: Vec<bool>,
     /// With what the kept trees were grown.
@@ -374,12 +374,6 @@ impl<'a> Grower<'a> {
             self.follow_ray(simd, worker, &next, kept, sink)?;
         }
         Ok(())
-    }
-
-    /// The list of solids that a camera ray starts in.
-    #[inline(always)]
-    pub(super) fn medium_of_eye<S: Simd>(&self, simd: S, worker: &mut Worker, ray: &Ray) -> u32 {
-        if self.surrounded { self.surroundings(simd, worker, ray) } else { Media::OUTSIDE }
     }
 
     /// Grows the node that a ray meets, if it meets any.

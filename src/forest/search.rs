@@ -99,6 +99,12 @@ impl Grower<'_> {
         self.search(simd, worker, sought)
     }
 
+    /// The list of solids that a camera ray starts in.
+    #[inline(always)]
+    pub(super) fn medium_of_eye<S: Simd>(&self, simd: S, worker: &mut Worker, ray: &Ray) -> u32 {
+        if self.surrounded { self.surroundings(simd, worker, ray) } else { Media::OUTSIDE }
+    }
+
     /// What met the ray of a kept node.
     #[inline(always)]
     pub(super) fn recall<S: Simd>(

@@ -9,6 +9,8 @@ mod build;
 mod leaf;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_rays;
 mod walk;
 
 use glam::DVec3;

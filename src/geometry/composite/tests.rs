@@ -5,18 +5,18 @@ use glam::DVec3;
 
 use crate::geometry::placement::Placed;
 use crate::geometry::query::Gather;
-use crate::geometry::testing::{Random, build, closest, mesh_solid, solid, triangle_cube};
-use crate::geometry::{Geometry, Hit, Leaving, Ray, Stack};
+use crate::geometry::testing::{Random, build, closest, solid};
+use crate::geometry::{Geometry, Ray, Stack};
 use crate::scene::csg::Operation;
 use crate::scene::{Placement, Shape, Solid};
 
 use Operation::{Complement, Difference, Intersection, Merge, Union};
 
-fn csg(operation: Operation, operands: &[usize]) -> Solid {
+pub(super) fn csg(operation: Operation, operands: &[usize]) -> Solid {
     solid(Shape::Csg { operation, operands: operands.to_vec() })
 }
 
-fn ball(center: DVec3, radius: f64) -> Solid {
+pub(super) fn ball(center: DVec3, radius: f64) -> Solid {
     solid(Shape::Sphere { center, radius })
 }
 
@@ -24,7 +24,7 @@ fn block(min: DVec3, max: DVec3) -> Solid {
     solid(Shape::Box { min, max })
 }
 
-fn cube(half: f64) -> Solid {
+pub(super) fn cube(half: f64) -> Solid {
     block(DVec3::splat(-half), DVec3::splat(half))
 }
 
@@ -33,7 +33,7 @@ fn below(height: f64) -> Solid {
 }
 
 /// Every crossing of a ray, in order, by the hierarchy; without it they are the same.
-fn crossings(geometry: &Geometry, ray: &Ray) -> Vec<(f64, u32)> {
+pub(super) fn crossings(geometry: &Geometry, ray: &Ray) -> Vec<(f64, u32)> {
     let mut stack = Stack::new(geometry);
     let (mut met, mut all) = (Vec::new(), Vec::new());
     let simd = Level::new();
@@ -52,7 +52,7 @@ fn ts(solids: &[Solid], ray: &Ray) -> Vec<f64> {
 }
 
 /// A ray from within a cube to a point near the middle.
-fn ray(random: &mut Random, reach: f64) -> Ray {
+pub(super) fn ray(random: &mut Random, reach: f64) -> Ray {
     let (origin, to) = (random.in_cube() * reach, random.in_cube() * 0.8);
     Ray { origin, direction: (to - origin).normalize() }
 }
@@ -481,87 +481,4 @@ fn the_bounds_of_a_difference_are_those_of_its_first() {
     assert!(near(bounds(&[cube(1.0), big.clone(), csg(Intersection, &[0, 1])]), 1.0));
     assert!(near(bounds(&[cube(1.0), big, csg(Merge, &[0, 1])]), 100.0));
     assert!(near(bounds(&[cube(1.0), below(0.0), csg(Intersection, &[0, 1])]), 1.0));
-}
-
-/// A cube of triangles is the cube: bored, boring, and left by rays from every side.
-#[test]
-fn a_closed_mesh_is_a_solid() {
-    let mut random = Random(21);
-    for _ in 0..60 {
-        let place = Placement {
-            translate: random.in_cube(),
-            rotate_degrees: random.in_cube() * 180.0,
-            scale: DVec3::ONE + random.in_cube() * 0.4,
-        };
-        let made = |mut cube: Solid| {
-            cube.placement = place.clone();
-            let ball = ball(place.translate, 0.9);
-            let operation = csg(Difference, &[0, 1]);
-            [
-                build(vec![cube.clone(), ball.clone(), operation.clone()]),
-                build(vec![ball, cube, operation]),
-            ]
-        };
-        let (boxes, meshes) = (made(cube(1.0)), made(mesh_solid(triangle_cube())));
-        for (of_box, of_mesh) in boxes.iter().zip(&meshes) {
-            let mut stack = Stack::new(of_mesh);
-            for _ in 0..40 {
-                let mut ray = ray(&mut random, 3.0);
-                let [a, b] = [of_box, of_mesh].map(|geometry| crossings(geometry, &ray));
-                assert_eq!(a.len(), b.len());
-                let mut leaving = None;
-                let mut way = 0.0;
-                for ((t, _), (u, primitive)) in a.iter().zip(b) {
-                    assert!((t - u).abs() < 1e-12);
-                    let hit = closest(of_mesh, Level::new(), &mut stack, &ray, leaving).unwrap();
-                    assert_eq!(hit.primitive, primitive);
-                    way += hit.t;
-                    assert!((way - u).abs() < 1e-12);
-                    let at = of_mesh.interaction(&stack, &ray, hit);
-                    let (next, left) = of_mesh.spawn(&at, ray.direction);
-                    (ray, leaving) = (next, Some(left));
-                }
-                assert_eq!(closest(of_mesh, Level::new(), &mut stack, &ray, leaving), None);
-            }
-        }
-    }
-}
-
-/// From a wall of a bore, at every angle, the wall itself is not met; its other side is.
-#[test]
-fn no_acne_in_a_bore() {
-    let mut random = Random(2);
-    for scale in [1e-6, 1.0, 1e6] {
-        for offset in [0.0, 1e2, 1e4, 1e6].map(|o| DVec3::splat(o * scale)) {
-            let place = |mut solid: Solid| {
-                (solid.placement.translate, solid.placement.scale) = (offset, DVec3::splat(scale));
-                solid
-            };
-            let geometry =
-                build(vec![place(cube(1.0)), place(ball(DVec3::Z, 0.8)), csg(Difference, &[0, 1])]);
-            let mut stack = Stack::new(&geometry);
-            for _ in 0..500 {
-                let above = DVec3::new(0.5 * random.signed(), 0.5 * random.signed(), 3.0);
-                let down = Ray { origin: offset + above * scale, direction: DVec3::NEG_Z };
-                let hit = closest(&geometry, Level::new(), &mut stack, &down, None).unwrap();
-                let at = geometry.interaction(&stack, &down, hit);
-                assert_eq!(hit.primitive, 1, "the ball's surface");
-                let mut up = random.direction();
-                up *= up.dot(at.geometric_normal).signum();
-                let (ray, leaving) = geometry.spawn(&at, up);
-                let met = closest(&geometry, Level::new(), &mut stack, &ray, Some(leaving));
-                if let Some(hit) = met {
-                    // The ball is hollow: the ray crosses it.
-                    let across = 1.6 * scale * up.dot(at.geometric_normal);
-                    let slack = 1e-9 * (scale + offset.length() * 1e-3);
-                    assert!((hit.t - across).abs() < slack, "{} of {across}", hit.t);
-                }
-                let into = Leaving { inside: true, ..leaving };
-                let within = Ray { direction: -up, ..ray };
-                let Hit { t, primitive } =
-                    closest(&geometry, Level::new(), &mut stack, &within, Some(into)).unwrap();
-                assert!(primitive == 0 && t > 0.0, "it leaves by the block's faces");
-            }
-        }
-    }
 }

@@ -193,7 +193,7 @@ impl Sight<'_> {
             Part::Nothing => return None,
         }
         let (&from, &to) = (roots.first()?, roots.last()?);
-        debug_assert!(roots.len() % 2 == 0 && roots.is_sorted(), "{roots:?}");
+        debug_assert!(roots.len().is_multiple_of(2) && roots.is_sorted(), "{roots:?}");
         for (i, &t) in self.lists.roots.iter().enumerate() {
             if t < f64::INFINITY {
                 let begins = (i % 2 == 0) != leaf.complement;

@@ -42,10 +42,11 @@ fn met(scene: Scene) -> Vec<u32> {
 /// Rays that left a solid which they were not in.
 fn lost(scene: &Scene) -> u64 {
     let progress = Progress::default();
-    let geometry = Geometry::build(scene, &progress).unwrap();
+    let geometry = Geometry::build(scene, &progress).expect("nobody cancels");
     let grower = Grower::new(scene, &geometry);
     let mut worker = grower.worker();
-    grower.block(&mut worker, (0, 0), &mut Discard, usize::MAX, &progress).unwrap();
+    let grown = grower.block(&mut worker, (0, 0), &mut Discard, usize::MAX, &progress);
+    assert_eq!(grown, Ok(()));
     worker.rays.lost
 }
 
@@ -209,7 +210,7 @@ fn what_is_lost_is_counted() {
 fn a_solid_made_of_others_is_one_medium() {
     let balls = [-0.5, 0.5].map(|x| sphere(DVec3::X * x, 1.0));
     let scene = |operation, iors: [f64; 2]| {
-        let mut scene = one_ray(DVec3::new(-5.0, 0.2, 0.1), DVec3::X);
+        let mut scene = one_ray(DVec3::new(-5.0, 0.35, 0.1), DVec3::X);
         scene.background = Background::Color(Rgb::WHITE);
         for (ball, ior) in balls.iter().zip(iors) {
             scene.solids.push(solid(ball.clone(), scene.materials.len()));
@@ -228,7 +229,7 @@ fn a_solid_made_of_others_is_one_medium() {
     assert_eq!(same, other);
     assert_eq!(lost(&scene(Operation::Merge, [GLASS, 2.4])), 0);
     let reverse = way(scene(Operation::Merge, [2.4, GLASS]));
-    assert!((reverse[1].1 - same[1].1).abs() > 1e-2);
+    assert!((reverse[1].1 - same[1].1).abs() > 1e-3);
 }
 
 /// A block of clear matter with a cavity cut out by a ball: light goes in, through air, and out.
