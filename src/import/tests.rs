@@ -91,7 +91,7 @@ fn obj_of_other_programs() {
     let found = sample("trimesh_box.obj");
     assert_eq!((triangles(&found), found.parts.len()), (vec![12], 0));
     let box_ = &found.scene.materials[0];
-    assert_eq!((box_.specular, box_.shininess), (Rgb::grey(0.352_941_18), 50.0));
+    assert_eq!((box_.specular, box_.shininess), (Rgb::grey(0.352_941_2), 50.0));
     let found = sample("meshio_cube.obj");
     assert_eq!((triangles(&found), found.scene.lights.len()), (vec![12], 1));
     assert_noted(&found, "added: a camera");

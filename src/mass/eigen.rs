@@ -46,10 +46,9 @@ fn rotate(a: &mut [[f64; 3]; 3], vectors: &mut [[f64; 3]; 3], p: usize, q: usize
     let (rp, rq) = (a[r][p], a[r][q]);
     (a[r][p], a[r][q]) = (c * rp - s * rq, s * rp + c * rq);
     (a[p][r], a[q][r]) = (a[r][p], a[r][q]);
-    for k in 0..3 {
-        let (vp, vq) = (vectors[p][k], vectors[q][k]);
-        (vectors[p][k], vectors[q][k]) = (c * vp - s * vq, s * vp + c * vq);
-    }
+    let (vp, vq) = (vectors[p], vectors[q]);
+    vectors[p] = std::array::from_fn(|k| c * vp[k] - s * vq[k]);
+    vectors[q] = std::array::from_fn(|k| s * vp[k] + c * vq[k]);
 }
 
 #[cfg(test)]

@@ -171,7 +171,7 @@ pub fn measure(
 fn first(goal: Goal) -> u32 {
     let Goal::Rays(most) = goal else { return FIRST };
     let mut n = last(most);
-    while n / 2 >= FIRST && n % 2 == 0 {
+    while n / 2 >= FIRST && n.is_multiple_of(2) {
         n /= 2;
     }
     n

@@ -93,7 +93,7 @@ pub(super) fn properties(estimate: &Estimate, frame: &Frame, density: f64) -> Op
     let Frame { rotation, translation, half } = *frame;
     let mean = &estimate.mean;
     let volume = Linear::moment(mean, 0);
-    if !(volume.value > 0.0) {
+    if volume.value <= 0.0 || volume.value.is_nan() {
         return None;
     }
     let per_volume = volume.inverse();

@@ -46,8 +46,8 @@ pub(super) fn read(job: &mut Job<'_>, bytes: &[u8]) -> Result<Scene, ImportError
     let root = Json::root(&document, job.source);
     version(job, &root)?;
     let buffers = Buffers::read(job, &root, binary)?;
-    let mut scene = Scene::default();
-    scene.materials = material::materials(job, &buffers)?;
+    let materials = material::materials(job, &buffers)?;
+    let scene = Scene { materials, ..Scene::default() };
     let mut walk =
         Walk { job, buffers, scene, names: Names::default(), camera: None, met: HashSet::new() };
     walk.scene_nodes(&root)?;

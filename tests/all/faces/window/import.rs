@@ -16,18 +16,22 @@ fn importing(files: &[&str], answers: &[&str]) -> Window {
 
 #[test]
 fn a_file_is_imported_shown_edited_and_saved() {
-    let files = ["assimp_scene.obj", "assimp_scene.mtl"];
     // A scene without the ending of one gets it.
-    let mut window = importing(&files, &["assimp_scene.obj", "new.obj"]);
+    let mut window = importing(&["spd_teapot.nff"], &["spd_teapot.nff", "new.obj"]);
+    let source = window.file("spd_teapot.nff");
+    let text = std::fs::read_to_string(&source).unwrap();
+    let small = text.replace("resolution 512 512", "resolution 32 24");
+    assert_ne!(small, text);
+    std::fs::write(&source, small).unwrap();
     window.menu(&["File", "Import…"]);
     window.until_text("The file is imported");
-    assert!(window.shows("the material `DefaultMaterial` is left out"));
+    assert!(window.shows("`hither` is left out"));
     let target = window.file("new.obj.toml");
     assert!(window.app().document().path() == Some(&target));
     window.click("Close");
     window.until_exact();
     assert!(rgb(&window.picture()) == rendered(window.folder.path(), "new.obj.toml"));
-    window.click("tiles");
+    window.click("fill 3");
     window.type_into("shininess value", "12");
     window.save();
     assert!(std::fs::read_to_string(&target).unwrap().contains("shininess = 12"));
