@@ -45,10 +45,11 @@ impl Signature {
         all.unwrap_or_default()
     }
 
-    /// The colours of a pixel's samples, in linear light.
+    /// The colours of a pixel's samples, given in linear light; compared are their square roots, which
+    /// differ about as much as the eye sees them differ.
     pub fn of_colors(colors: &[Rgb]) -> Signature {
         let one = |color: &Rgb| {
-            let values = color.0.map(|c| in_units(c.clamp(0.0, 15.0)));
+            let values = color.0.map(|c| in_units(c.clamp(0.0, 200.0).sqrt()));
             Signature { seen: 0, low: values, high: values }
         };
         colors.iter().map(one).reduce(Signature::and).unwrap_or_default()

@@ -8,7 +8,7 @@ pub enum Refine {
     /// What their trees met, and cosines: an edit of colours changes no pixel's number of samples.
     #[default]
     Trees,
-    /// Their colours in linear light, before exposure: decided again after every edit.
+    /// Square roots of their colours, before exposure: decided again after every edit.
     Contrast,
 }
 
