@@ -213,10 +213,20 @@ fn random_value(parameter: &Parameter, scene: &Scene, random: &mut Random) -> St
     }
 }
 
-/// A shape that reads no file.
+/// A shape that reads no file and is not made of others, which have no material to write.
 fn some_shape(random: &mut Random) -> Shape {
-    let mut keys = fields::SHAPES.iter().filter(|key| **key != "mesh");
-    Shape::named(keys.nth(random.below(fields::SHAPES.len() - 1)).unwrap())
+    let plain = |key: &&&str| **key != "mesh" && !Shape::named(key).is_composite();
+    let keys: Vec<&&str> = fields::SHAPES.iter().filter(plain).collect();
+    Shape::named(keys[random.below(keys.len())])
+}
+
+/// Gives the operands of all solids other numbers.
+fn renumber(scene: &mut Scene, number: impl Fn(usize) -> usize) {
+    for solid in &mut scene.solids {
+        if let Shape::Csg { operation: _, operands } = &mut solid.shape {
+            operands.iter_mut().for_each(|operand| *operand = number(*operand));
+        }
+    }
 }
 
 /// Sets some random parameter to some value that it may have.
@@ -288,10 +298,14 @@ fn restructure(scene: &mut Scene, random: &mut Random) {
             let index = some(scene.materials.len(), material);
             let shape = some_shape(random);
             scene.solids.insert(solid, Solid::new(name, shape, index));
+            renumber(scene, |i| i + usize::from(i >= solid));
         }
-        8 if solid < scene.solids.len() => drop(scene.solids.remove(solid)),
+        8 if solid < scene.solids.len() && !scene.is_operand()[solid] => {
+            scene.solids.remove(solid);
+            renumber(scene, |i| i - usize::from(i > solid));
+        }
         9 if solid < scene.solids.len() => scene.solids[solid].name = name,
-        10 if solid < scene.solids.len() => {
+        10 if solid < scene.solids.len() && !scene.solids[solid].shape.is_composite() => {
             scene.solids[solid].shape = some_shape(random);
         }
         11 => {
@@ -306,7 +320,7 @@ fn restructure(scene: &mut Scene, random: &mut Random) {
 
 fn insert_material(scene: &mut Scene, at: usize, material: Material) {
     scene.materials.insert(at, material);
-    for solid in &mut scene.solids {
+    for solid in scene.solids.iter_mut().filter(|solid| !solid.shape.is_composite()) {
         solid.material += usize::from(solid.material >= at);
     }
 }
@@ -346,10 +360,15 @@ fn things_change_places_with_their_comments() {
             if edited.solids.len() > 1 && !solids {
                 let index = random.below(edited.solids.len());
                 edited.solids.swap(0, index);
+                renumber(&mut edited, |i| match i {
+                    0 => index,
+                    i if i == index => 0,
+                    i => i,
+                });
             }
             if edited.materials.len() > 1 && !materials {
                 edited.materials.swap(0, 1);
-                for solid in &mut edited.solids {
+                for solid in edited.solids.iter_mut().filter(|s| !s.shape.is_composite()) {
                     solid.material = [1, 0].get(solid.material).copied().unwrap_or(solid.material);
                 }
             }

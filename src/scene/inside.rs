@@ -106,9 +106,20 @@ impl Question<'_> {
     fn may_contain(&self, solid: &Solid, point: DVec3, (reach, depth): (f64, u64)) -> bool {
         self.asked.set(self.asked.get() + 1);
         let given_up = self.asked.get() > 2 * MOST_PARTS || depth > MOST_DEEP;
-        if solid.moves() || given_up {
-            // It may come by.
+        if given_up {
             return true;
+        }
+        let way = match solid.moves() {
+            true => solid.motion.translate.length(),
+            false => 0.0,
+        };
+        let reach = reach + way;
+        if solid.moves() && solid.motion.rotate_degrees != DVec3::ZERO {
+            // However it turns, nothing of it comes nearer than its farthest point to its origin.
+            let away = point.distance(solid.placement.translate);
+            let size = solid.placement.scale.max_element();
+            return farthest(&solid.shape)
+                .is_none_or(|far| away <= far * size * (1.0 + MARGIN) + reach);
         }
         let Placement { translate, rotate_degrees, scale } = solid.placement;
         let [x, y, z] = rotate_degrees.to_array().map(f64::to_radians);
@@ -177,6 +188,30 @@ impl Question<'_> {
     }
 }
 
+/// The distance of a form's farthest point from its origin, at most; `None` if it is not known.
+fn farthest(shape: &Shape) -> Option<f64> {
+    let corner = |min: DVec3, max: DVec3| min.abs().max(max.abs()).length();
+    let of =
+        |points: &mut dyn Iterator<Item = DVec3>| points.map(DVec3::length).fold(0.0, f64::max);
+    Some(match shape {
+        Shape::Sphere { center, radius } => center.length() + radius,
+        Shape::Box { min, max } | Shape::Quadric { min, max, .. } => corner(*min, *max),
+        Shape::Cylinder { from, to, radius } => from.length().max(to.length()) + radius,
+        Shape::Cone { from, to, radius, tip } => from.length().max(to.length()) + radius.max(*tip),
+        Shape::Torus { major, minor } => major + minor,
+        Shape::Ellipsoid { center, radii } => center.length() + radii.max_element(),
+        Shape::Prism { outline, bottom, top } => {
+            let height = bottom.abs().max(top.abs());
+            of(&mut outline.iter().flatten().map(|corner| corner.extend(height)))
+        }
+        Shape::Polygon { points } => of(&mut points.iter().copied()),
+        Shape::Mesh { file: _, mesh } => of(&mut mesh.positions.iter().copied()),
+        Shape::Knot { turns: _, tube, segments: _ } => 2.0 + tube,
+        Shape::Sphereflake { center, radius, levels: _ } => center.length() + 2.0 * radius,
+        Shape::Plane { .. } | Shape::Csg { .. } => return None,
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -200,6 +235,22 @@ mod tests {
             });
         }
         scene
+    }
+
+    #[test]
+    fn what_moves_contains_only_where_it_comes() {
+        let mut scene = scene([1.5, 1.5], [0.8, 0.8]);
+        let mut around = |eye: DVec3, motion: Motion| {
+            (scene.camera.eye, scene.solids[0].motion) = (eye, motion);
+            scene.clear_around_the_eye()
+        };
+        let none = DVec3::ZERO;
+        let along = |z| Motion { translate: DVec3::Z * z, rotate_degrees: none };
+        assert_eq!(around(DVec3::Z * 4.0, along(1.0)), [0usize; 0]);
+        assert_eq!(around(DVec3::Z * 4.0, along(3.5)), [0]);
+        let turning = Motion { translate: none, rotate_degrees: DVec3::X * 90.0 };
+        assert_eq!(around(DVec3::Z * 4.0, turning.clone()), [0usize; 0]);
+        assert_eq!(around(DVec3::Y * 0.9, turning), [0]);
     }
 
     #[test]

@@ -46,9 +46,21 @@ fn scenes() -> PathBuf {
 }
 
 /// The shipped scenes by the stem of their file.
-const SHIPPED: [&str; 13] = [
-    "whitted", "plain", "glass", "gems", "flake", "mesh", "mirrors", "motion", "studio", "gallery",
-    "chain", "gears", "csg_part",
+const SHIPPED: [&str; 14] = [
+    "whitted",
+    "plain",
+    "glass",
+    "gems",
+    "flake",
+    "mesh",
+    "mirrors",
+    "motion",
+    "studio",
+    "gallery",
+    "chain",
+    "gears",
+    "csg_part",
+    "still_life",
 ];
 
 /// A shipped scene as a small picture; the knot with fewer triangles, the flake with fewer spheres.

@@ -360,6 +360,8 @@ pub(super) const ROWS: &[Row] = &[
     // What neither mirrors nor transmits has nothing to blur.
     row("materials.*.gloss", &[("20", Nothing), ("0.5", Nothing), ("@", Nothing)]),
     row("materials.*.translucency", &[("20", Nothing), ("0.5", Nothing), ("@", Nothing)]),
+    // Which of two surfaces is there decides where rays go.
+    row("materials.*.priority", &[("1", Retrace), ("1000", Retrace), ("@", Retrace)]),
     row("materials.glass.ior", &[("1", Regrow), ("0.8", Regrow), ("2.4", Regrow), ("@", Regrow)]),
     // Nothing passes through the others: only what is thinner than air or glass shows it.
     row(
