@@ -147,6 +147,12 @@ impl Primitives {
         Ok(all)
     }
 
+    /// Whether any shape is decided by corners seen along the ray.
+    #[inline(always)]
+    pub(super) fn has_corners(&self) -> bool {
+        !self.triangles.is_empty() || !self.shapes.is_empty()
+    }
+
     /// How many primitives there are.
     pub(super) fn count(&self) -> usize {
         self.solid_of.len()
