@@ -65,7 +65,7 @@ impl<'a> Walk<'a> {
         (leaving, slack): (Departure, f64),
         moment: &'a RefCell<Moment>,
     ) -> Walk<'a> {
-        let shear = if among.has_corners() { Shear::new(ray) } else { Shear::UNUSED };
+        let shear = if among.sheared { Shear::new(ray) } else { Shear::UNUSED };
         Walk { ray, shear, leaving, slack, moment }
     }
 }
