@@ -143,7 +143,9 @@ impl Form {
     pub(super) fn is_sheared(&self) -> bool {
         match self {
             Form::Polygon(..) => true,
-            Form::Cuboid(..) | Form::PlacedCuboid(..) | Form::Ellipsoid(..) | Form::Closed(_) => false,
+            Form::Cuboid(..) | Form::PlacedCuboid(..) | Form::Ellipsoid(..) | Form::Closed(_) => {
+                false
+            }
             // What meets rays itself shears its own.
             Form::Moving(_) | Form::Composite(_) => false,
         }
