@@ -3,6 +3,7 @@
 mod classes;
 mod memory;
 pub mod rays;
+mod sampling;
 
 use std::time::Instant;
 
@@ -19,6 +20,11 @@ use crate::scene::range::Kind;
 use crate::session::trace::{TraceError, TraceReport, trace_only};
 use crate::session::{Class, Options, Session};
 
+/// Seconds for all repeated traces, about: there are 1 … 5.
+const TRACE_SECONDS: f64 = 60.0;
+/// Seconds after which no further edit is measured, of each kind.
+const EDIT_SECONDS: f64 = 20.0;
+
 /// Traces `scene` and measures everything that `rayforest bench` reports, as one JSON object.
 ///
 /// Times are medians of several runs of one process; ratios between them are meaningful, the
@@ -27,14 +33,13 @@ pub fn measure(name: &str, scene: Scene, options: Options) -> Result<Value, Trac
     let progress = Progress::default();
     let mut session = Session::open(scene, options, &progress)?;
     let first = session.trace_report();
-    let runs = match first.seconds {
-        s if s < 8.0 => 5,
-        s if s < 30.0 => 3,
-        _ => 1,
-    };
+    let tiles: Vec<usize> = (0..session.transport().layout.tiles()).collect();
     let (mut kept, mut alone) = (Vec::new(), Vec::new());
+    // Each run traces twice.
+    let runs = (TRACE_SECONDS / (2.0 * first.seconds)).clamp(1.0, 5.0) as usize;
     for _ in 0..runs {
-        let bare = trace_only(session.scene(), session.geometry(), session.pool(), &progress)?;
+        let wanted = (session.scene(), &tiles[..]);
+        let bare = trace_only(wanted, session.geometry(), session.pool(), &progress)?;
         alone.push(bare.seconds);
         session.trace_again(&progress)?;
         kept.push(session.trace_report());
@@ -44,6 +49,7 @@ pub fn measure(name: &str, scene: Scene, options: Options) -> Result<Value, Trac
     let trace_only_s = Spread::of(alone).median;
     let shading = Shading::measure(&mut session);
     let mut row = traced(name, &session, &report, first, trace_only_s);
+    row["trace_runs"] = json!(runs);
     let rate = 1.0 / (trace_only_s * options.threads as f64);
     row["rays_per_core_s"] = json!(report.rays.total() as f64 * rate);
     row["memory_limit_ms"] = json!(shading.limit.median);
@@ -61,8 +67,10 @@ pub fn measure(name: &str, scene: Scene, options: Options) -> Result<Value, Trac
         trace: report.seconds * 1e3,
         rays: report.rays.total() as f64,
         reshade: shading.eight_bit.median,
+        reshade_p99: shading.eight_bit.p99,
     };
     session.trace_again(&progress)?;
+    row["sampling"] = sampling::measure(&session, &report)?;
     row["classes"] = classes::measure(&mut session, &by)?;
     row["peak_rss_mb"] = json!(memory::peak_resident_mb());
     Ok(row)
@@ -72,12 +80,13 @@ pub fn measure(name: &str, scene: Scene, options: Options) -> Result<Value, Trac
 pub fn summary(row: &Value) -> String {
     let number = |path: &str| row.pointer(path).and_then(Value::as_f64).unwrap_or(f64::NAN);
     format!(
-        "{}: trace {:.2} s (alone {:.2}, fold {:.2}), {:.2} M rays/s per core\n  \
+        "{}: trace {:.2} s ({} runs; alone {:.2}, fold {:.2}), {:.2} M rays/s per core\n  \
          re-shade {:.2} ms ({:.2} × memory limit), to 8 bits {:.2} ms: {:.0} times faster\n  \
          edit {:.2} ms, p99 {:.2}; {:.1} terms per pixel; bytes per pixel: forest {:.0}, \
          transport {:.1}, highlights {:.1}; peak {:.0} MB",
         row["scene"].as_str().unwrap_or("?"),
         number("/trace_s"),
+        number("/trace_runs"),
         number("/trace_only_s"),
         number("/fold_s"),
         number("/rays_per_core_s") / 1e6,
@@ -93,6 +102,7 @@ pub fn summary(row: &Value) -> String {
         number("/bytes_per_pixel/highlights"),
         number("/peak_rss_mb"),
     ) + &classes::summary(&row["classes"])
+        + &sampling::summary(&row["sampling"])
 }
 
 fn traced(
@@ -201,7 +211,7 @@ struct Edits {
 }
 
 impl Edits {
-    /// Takes 100 edits that change at least 1 % of the pixels and cast no ray, of every parameter
+    /// Takes up to 100 edits that change at least 1 % of the pixels and cast no ray, of every parameter
     /// that can: coefficients, exponents, switches, exposure. Asking for the class beforehand, as a
     /// badge does, is not part of the time.
     fn measure(session: &mut Session) -> Result<Edits, TraceError> {
@@ -214,8 +224,10 @@ impl Edits {
             .collect();
         let (mut times, mut share) = (Vec::new(), 0.0);
         let (mut refolds, mut too_small, mut needing_rays) = (0, 0, 0);
+        let started = Instant::now();
         for _ in 0..3000 {
-            if times.len() == 100 || names.is_empty() {
+            let late = started.elapsed().as_secs_f64() > EDIT_SECONDS;
+            if times.len() == 100 || names.is_empty() || late {
                 break;
             }
             let name = &names[random.below(names.len())];

@@ -6,7 +6,7 @@ use super::advice::{best, mark_front};
 use super::{Advice, Chart, Cost, Deviation, Goal, Point, SETTINGS, Setting, Sweep, text_of};
 use crate::clock::thread_seconds;
 use crate::color::srgb_code;
-use crate::film::Film;
+use crate::film::{Film, FilmBlock};
 use crate::geometry::Geometry;
 use crate::math::exposure_factor;
 use crate::progress::Progress;
@@ -132,7 +132,8 @@ impl Run<'_> {
         for (value, (mut scene, text)) in scenes {
             with(&mut scene, setting.path, &text);
             let (film, cost) = self.timed(&format!("{} = {text}", setting.path), &scene)?;
-            let error = deviation(&film, &truth_film, gain);
+            let pixels = film.layout.pixels();
+            let error = deviation(&film.blocks, &truth_film.blocks, pixels, gain);
             let point = Point { value, cost, error, front: false };
             (self.tell)(News::Measured(setting.path, point.clone()));
             points.push(point);
@@ -187,11 +188,12 @@ fn processor_seconds(pool: &ThreadPool) -> f64 {
     pool.broadcast(|_| thread_seconds()).into_iter().sum()
 }
 
-/// How far a film is from the truth; `gain` is the exposure's factor. Of films of one cut.
-fn deviation(film: &Film, truth: &Film, gain: f32) -> Deviation {
-    assert_eq!(film.layout, truth.layout, "films of the same cut");
+/// How far the blocks of a picture are from the truth: as many of the same tiles, with so many pixels
+/// in all. `gain` is the exposure's factor.
+pub fn deviation(blocks: &[FilmBlock], truth: &[FilmBlock], pixels: u64, gain: f32) -> Deviation {
+    assert_eq!(blocks.len(), truth.len(), "blocks of the same tiles");
     let (mut linear, mut codes) = (0.0, 0.0);
-    for (a, b) in film.blocks.iter().zip(&truth.blocks) {
+    for (a, b) in blocks.iter().zip(truth) {
         // Lanes beside the picture are 0 in both.
         for (&a, &b) in a.0.as_flattened().iter().zip(b.0.as_flattened()) {
             let light = f64::from(a * gain) - f64::from(b * gain);
@@ -200,7 +202,7 @@ fn deviation(film: &Film, truth: &Film, gain: f32) -> Deviation {
             codes += code * code;
         }
     }
-    let count = (film.layout.pixels() * 3) as f64;
+    let count = (pixels * 3) as f64;
     Deviation { linear: (linear / count).sqrt(), codes: (codes / count).sqrt() }
 }
 
@@ -225,6 +227,8 @@ mod tests {
     fn deviations_are_those_of_the_definition() {
         let size = [50, 33];
         let (black, half) = (grey(0.0, size), grey(0.5, size));
+        let deviation =
+            |a: &Film, b: &Film, gain| deviation(&a.blocks, &b.blocks, a.layout.pixels(), gain);
         assert_eq!(deviation(&half, &half, 1.0), Deviation::default());
         let one = deviation(&half, &black, 1.0);
         assert!((one.linear - 0.5).abs() < 1e-12, "{one:?}");

@@ -19,7 +19,7 @@ mod tables;
 
 pub use advice::Advice;
 pub use draw::{COLORS, about, png, svg};
-pub use measure::{News, Wishes, measure};
+pub use measure::{News, Wishes, deviation, measure};
 pub use tables::{csv, json};
 
 use std::fmt;

@@ -3,7 +3,7 @@
 use fearless_simd::{Simd, dispatch};
 use glam::DVec3;
 
-use super::grow::{Arrival, Grower, Known, Limits, Pending, Stop, Worker, blurred, branch, known};
+use super::grow::{Arrival, Grower, Known, Limits, Pending, Stop, Worker, aimed, branch, known};
 use super::kept::{KeptLight, KeptNode, KeptTrees, Recall, Recalled};
 use super::sampling::Sample;
 use super::scope::{At, Scope};
@@ -273,7 +273,7 @@ impl Grower<'_> {
             from,
             (mirror, at.material, mirrored),
             (ends.reflected(), to_mirrored),
-            |path| blurred(path, surface.reflect(), (gloss, up), sample, ways[0]),
+            || aimed(surface.reflect(), (gloss, up), sample, ways[0]),
         );
         // There is a ray: only a file can say of a total reflection that it is none.
         let sharp = surface.refracted.unwrap_or(from.ray.direction);
@@ -281,7 +281,7 @@ impl Grower<'_> {
             from,
             (Kind::Transmit, at.material, passed),
             (ends.transmitted(), to_passed),
-            |path| blurred(path, sharp, (translucency, -up), sample, ways[1]),
+            || aimed(sharp, (translucency, -up), sample, ways[1]),
         );
         let of = |branch: fn(&Next) -> Branch| {
             Ends::new(branch(&reflected), branch(&transmitted), ends.total()).found(searched)
@@ -307,14 +307,14 @@ impl Grower<'_> {
             let media = [crossing.front, crossing.behind];
             let site = Site { at: &at, surface: &surface, path: from.way, media, touching };
             let mut recalled = Some(recalled);
-            for light in 0..self.lamps.len() as u16 {
-                if scope.has_light(light.into()) {
+            for light in 0..self.lamps.len() {
+                if scope.has_light(light) {
                     self.light(simd, worker, &site, light, &mut recalled, sink)?;
                     continue;
                 }
-                let key = self.keys[usize::from(light)];
+                let key = self.keys[light];
                 while let Some(record) = recalled.as_mut().and_then(|r| r.record(key)) {
-                    sink.record(light, record);
+                    sink.record(light as u16, record);
                 }
             }
         } else {
@@ -354,14 +354,14 @@ impl Grower<'_> {
     }
 
     /// What becomes of a branch that ended as `before` says and now stands at `to`; `aimed` gives the
-    /// direction of its ray.
+    /// direction of its ray, if it has one.
     #[inline(always)]
     fn next(
         &self,
         from: &Pending,
         (kind, material, by): (Kind, u16, f32),
         (before, to): (Branch, At),
-        aimed: impl Fn(PathWeight) -> Result<(PathWeight, DVec3), End>,
+        aimed: impl Fn() -> Option<DVec3>,
     ) -> Next {
         let (grown, idle) = (before == Branch::Grown, from.ray.direction);
         if to == At::NONE {
@@ -373,13 +373,12 @@ impl Grower<'_> {
             // Whether it is alive today is not asked: what is kept of it stays.
             let ray = grown.then(|| {
                 let path = followed.unwrap_or(from.path);
-                let direction = aimed(path).map_or(idle, |(_, direction)| direction);
-                (path, direction, Known::Hit, to)
+                (path, aimed().unwrap_or(idle), Known::Hit, to)
             });
             let folded = if grown { Branch::Grown } else { Branch::Absent };
             return Next { folded, kept: before, ray };
         }
-        let followed = followed.and_then(aimed);
+        let followed = followed.and_then(|path| Ok((path, aimed().ok_or(End::Astray)?)));
         let end = branch(&followed);
         let ray = match (followed, known(Some(before), true, followed.is_ok())) {
             (Ok((path, direction)), known) => Some((path, direction, known, to)),

@@ -18,6 +18,16 @@ pub(super) fn drawn(axis: DVec3, exponent: f32, [u, v]: [f64; 2]) -> DVec3 {
     (axis * cosine + a * (sine * cos) + b * (sine * sin)).normalize()
 }
 
+/// The same, or `None` if it is not on the side of `up`. Out of line: few surfaces blur.
+#[inline(never)]
+pub(super) fn drawn_above(
+    axis: DVec3,
+    (exponent, up): (f32, DVec3),
+    numbers: [f64; 2],
+) -> Option<DVec3> {
+    Some(drawn(axis, exponent, numbers)).filter(|direction| direction.dot(up) > 0.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

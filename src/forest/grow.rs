@@ -422,9 +422,9 @@ impl<'a> Grower<'a> {
     #[inline(always)]
     pub(super) fn arrive(&self, worker: &mut Worker, from: &Pending, met: Met) -> Arrival {
         let Met { hit, found } = met;
-        let mut at = self.geometry.interaction(&worker.stack, &from.ray, hit);
+        let at = self.geometry.interaction(&worker.stack, &from.ray, hit);
         let length = from.length + hit.t;
-        let tone = self.tone(&worker.stack, &mut at, length);
+        let (at, tone) = self.tone(&worker.stack, at, length);
         let mut surface = Surface::new(&at, from.ray.direction);
         let crossing = match found {
             None => worker.media.cross(from.medium, &at, surface.entering),
@@ -452,27 +452,14 @@ impl<'a> Grower<'a> {
         let hit = met.hit;
         let Arrival { at, length, tone, surface, crossing, touching, searched, eta } =
             self.arrive(worker, from, met);
-        let refracted = surface.refracted;
-        let total = refracted.is_none();
         let fresnel = self.reflectance(at.material, &surface);
-        let [mirrored, passed] = weights(fresnel);
-        let follow = |kind, by: f32| self.follow(from, (kind, at.material), by * from.geometric);
-        let reflected = follow(if total { Kind::TotalReflect } else { Kind::Reflect }, mirrored);
-        let transmitted = refracted.map(|sharp| (sharp, follow(Kind::Transmit, passed)));
-        let ways = [false, true].map(|transmitted| branch_path(from.way, transmitted));
-        let [gloss, translucency] = self.lobes[at.solid as usize];
-        let (sample, up) = (worker.sample, surface.geometric);
-        let reflected = reflected
-            .and_then(|path| blurred(path, surface.reflect(), (gloss, up), sample, ways[0]));
-        let transmitted = transmitted.map(|(sharp, path)| {
-            path.and_then(|path| blurred(path, sharp, (translucency, -up), sample, ways[1]))
-        });
-        let ends = Ends::new(
-            branch(&reflected),
-            transmitted.as_ref().map_or(Branch::Absent, branch),
-            total,
-        )
-        .found(searched);
+        let by = weights(fresnel);
+        let Branches { followed, directions } =
+            self.branches(worker.sample, from, (&at, &surface), by);
+        let total = surface.refracted.is_none();
+        let [reflected, transmitted] = followed.each_ref().map(branch);
+        let transmitted = if total { Branch::Absent } else { transmitted };
+        let ends = Ends::new(reflected, transmitted, total).found(searched);
         let (material, slot) = (at.material, at.slot);
         let node = Node {
             t: hit.t,
@@ -491,53 +478,96 @@ impl<'a> Grower<'a> {
         }
         let media = [crossing.front, crossing.behind];
         let site = Site { at: &at, surface: &surface, path: from.way, media, touching };
-        for light in 0..self.lamps.len() as u16 {
+        for light in 0..self.lamps.len() {
             self.light(simd, worker, &site, light, &mut recalled, sink)?;
         }
-        let ends = recalled.map(|r| r.node.ends);
-        let current = recalled.is_some_and(|r| r.current);
-        let mut queue = |followed, by: f32, side, medium, known| {
+        let known = match recalled {
+            None => [Known::Nothing; 2],
+            Some(recalled) => {
+                let same = match recalled.current {
+                    true => [true; 2],
+                    false => self.same_rays(at.solid as usize, &crossing, eta),
+                };
+                let ends = recalled.node.ends;
+                let known = |before, same, i: usize| known(Some(before), same, followed[i].is_ok());
+                [known(ends.reflected(), same[0], 0), known(ends.transmitted(), same[1], 1)]
+            }
+        };
+        let mut queue = |i: usize, side, direction: DVec3, medium| {
             // The ray of what is not followed is of no use.
-            let (path, ray, leaving) = match followed {
-                Ok((path, direction)) => {
+            let (path, ray, leaving) = match followed[i] {
+                Ok(path) => {
                     let (ray, leaving) = self.geometry.spawn(&at, direction);
                     (path, ray, Some(leaving))
                 }
-                Err(_) if known == Known::Dropped => (from.path, from.ray, None),
+                Err(_) if known[i] == Known::Dropped => (from.path, from.ray, None),
                 Err(_) => return,
             };
-            let way = ways[usize::from(side == Side::Transmitted)];
-            let (parent, geometric) = (Some((name, side)), by * from.geometric);
-            let scope = At::ALL;
             let next = Pending {
                 ray,
                 length,
                 leaving,
-                way,
+                way: branch_path(from.way, side == Side::Transmitted),
                 path,
-                geometric,
-                parent,
+                geometric: by[i] * from.geometric,
+                parent: Some((name, side)),
                 medium,
                 touching,
-                known,
-                scope,
+                known: known[i],
+                scope: At::ALL,
             };
             worker.pending.push(next);
         };
-        let straight = !self.bent.get(at.solid as usize).is_some_and(|bent| *bent);
-        let before = self.before.lobes[at.solid as usize];
-        if let Some(transmitted) = transmitted {
-            let same = current
-                || straight && before[1] == translucency && self.refracts_as_before(&crossing, eta);
-            let known = known(ends.map(Ends::transmitted), same, transmitted.is_ok());
-            queue(transmitted, passed, Side::Transmitted, crossing.behind, known);
-        } else if ends.map(Ends::transmitted) == Some(Branch::Grown) {
-            queue(Err(End::Zero), 0.0, Side::Transmitted, crossing.front, Known::Dropped);
-        }
-        let same = current || straight && before[0] == gloss;
-        let known = known(ends.map(Ends::reflected), same, reflected.is_ok());
-        queue(reflected, mirrored, Side::Reflected, crossing.front, known);
+        let [mirror, through] = directions;
+        let through = through.unwrap_or(from.ray.direction);
+        queue(1, Side::Transmitted, through, crossing.behind);
+        let mirror = match followed[0] {
+            Ok(_) => mirror.unwrap_or_else(|| surface.reflect()),
+            Err(_) => from.ray.direction,
+        };
+        queue(0, Side::Reflected, mirror, crossing.front);
         Ok(())
+    }
+
+    /// Which branches of a node are followed, and where to.
+    #[inline(always)]
+    fn branches(
+        &self,
+        sample: Sample,
+        from: &Pending,
+        (at, surface): (&Interaction, &Surface),
+        [mirrored, passed]: [f32; 2],
+    ) -> Branches {
+        let follow = |kind, by: f32| self.follow(from, (kind, at.material), by * from.geometric);
+        let mut followed = match surface.refracted {
+            None => [follow(Kind::TotalReflect, mirrored), Err(End::Zero)],
+            Some(_) => [follow(Kind::Reflect, mirrored), follow(Kind::Transmit, passed)],
+        };
+        let mut directions = [None, surface.refracted];
+        let lobes = self.lobes[at.solid as usize];
+        if lobes != SHARP {
+            let (up, sharp) = (surface.geometric, [Some(surface.reflect()), surface.refracted]);
+            for (i, (up, transmitted)) in [(up, false), (-up, true)].into_iter().enumerate() {
+                if followed[i].is_ok() {
+                    let way = branch_path(from.way, transmitted);
+                    directions[i] = sharp[i].and_then(|d| aimed(d, (lobes[i], up), sample, way));
+                    if directions[i].is_none() {
+                        followed[i] = Err(End::Astray);
+                    }
+                }
+            }
+        }
+        Branches { followed, directions }
+    }
+
+    /// Whether mirror and refracted ray of a node leave as they did in the kept trees, in front of which
+    /// the same ray arrived.
+    #[inline(always)]
+    fn same_rays(&self, solid: usize, crossing: &Crossing, eta: f64) -> [bool; 2] {
+        let straight = !self.bent.get(solid).is_some_and(|bent| *bent);
+        let [mirror, through] =
+            [0, 1].map(|i| straight && self.before.lobes[solid][i] == self.lobes[solid][i]);
+        [mirror, through && crossing.eta(&self.before.iors) == eta]
     }
 
     /// Fresnel's reflectance, or [`NO_FRESNEL`] of a material whose branches it does not weigh.
@@ -562,29 +592,32 @@ impl<'a> Grower<'a> {
         }
         self.values.follow(from.path, Factor::new(kind, material, 0))
     }
-
-    /// Whether a surface bends rays as it did in the kept trees.
-    #[inline(always)]
-    fn refracts_as_before(&self, crossing: &Crossing, eta: f64) -> bool {
-        crossing.eta(&self.before.iors) == eta
-    }
 }
 
-/// A branch that is followed and its direction: the sharp one, or, with an exponent above 0, one drawn
-/// from the lobe around it, which must be on the side of `up`.
+/// The lobes of a material that does not blur.
+const SHARP: Lobes = [0.0; 2];
+
+/// The mirror and the refracted branch of a node.
+struct Branches {
+    /// Their weights, if they are followed.
+    followed: [Result<PathWeight, End>; 2],
+    /// Where they go: the mirror ray's is known only of what blurs.
+    directions: [Option<DVec3>; 2],
+}
+
+/// The direction of a branch: the sharp one, or, with an exponent above 0, one drawn from the lobe
+/// around it; `None` if that is not on the side of `up`.
 #[inline(always)]
-pub(super) fn blurred(
-    path: PathWeight,
+pub(super) fn aimed(
     sharp: DVec3,
     (exponent, up): (f32, DVec3),
     sample: Sample,
     way: u32,
-) -> Result<(PathWeight, DVec3), End> {
-    if exponent == 0.0 {
-        return Ok((path, sharp));
+) -> Option<DVec3> {
+    match exponent == 0.0 {
+        true => Some(sharp),
+        false => blur::drawn_above(sharp, (exponent, up), sample.numbers(Effect::Gloss, way)),
     }
-    let direction = blur::drawn(sharp, exponent, sample.numbers(Effect::Gloss, way));
-    if direction.dot(up) > 0.0 { Ok((path, direction)) } else { Err(End::Astray) }
 }
 
 pub(super) fn branch<T>(followed: &Result<T, End>) -> Branch {

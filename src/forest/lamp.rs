@@ -29,6 +29,12 @@ enum Source {
         axis: DVec3,
         cone: Cone,
     },
+    Area(Surface),
+}
+
+/// Where the points of a light with an area lie.
+#[derive(Clone, Debug)]
+enum Surface {
     /// The corner from which two edges leave, and the unit vector that stands on it.
     Rectangle {
         corner: DVec3,
@@ -54,25 +60,26 @@ struct Cone {
     inner: f64,
 }
 
-/// A light as seen from a point: what its rays have in common.
-pub(super) struct Aim<'a> {
-    lamp: &'a Lamp,
-    /// From the point to where the light is, or, for a rectangle, its corner.
-    arm: DVec3,
-    /// For a direction infinite.
-    reach: f64,
-    /// What one ray weighs, its cone included; without falloff.
-    weight: f64,
-    across: Across,
-    /// Unit, stands on the points of a light with an area; zero of any other.
-    normal: DVec3,
+/// A light as seen from a point.
+pub(super) enum Aim<'a> {
+    /// One ray goes to it.
+    Sharp(Beam),
+    /// Its rays go to points that are drawn.
+    Spread(Spread<'a>),
 }
 
-/// Over what the points of a light spread.
-enum Across {
-    Nothing,
-    Rectangle([DVec3; 2]),
-    Disc([DVec3; 2]),
+/// A light with an area as seen from a point: what its rays have in common.
+pub(super) struct Spread<'a> {
+    lamp: &'a Lamp,
+    /// From the point to the light's middle, or, for a rectangle, its corner.
+    arm: DVec3,
+    /// Two edges, or two radii.
+    across: [DVec3; 2],
+    round: bool,
+    /// What one ray weighs, without falloff.
+    weight: f64,
+    /// Unit, stands on its points.
+    normal: DVec3,
 }
 
 /// One of the points of a light, as seen from a point of a surface.
@@ -96,108 +103,107 @@ impl Lamp {
                 axis: (*towards - *at).normalize(),
                 cone: Cone::new(*angle_degrees, *edge),
             },
-            LightPlace::Area(Area::Rectangle { center, along, across }) => Source::Rectangle {
-                corner: *center - (*along + *across) / 2.0,
-                edges: [*along, *across],
-                normal: along.normalize().cross(across.normalize()).normalize_or_zero(),
-            },
-            LightPlace::Area(Area::Disc { center, normal, radius }) => {
-                let normal = normal.normalize();
-                Source::Disc { center: *center, radii: radii(normal, *radius), normal }
-            }
-            LightPlace::Area(Area::Sphere { center, radius }) => {
-                Source::Sphere { center: *center, radius: *radius }
-            }
+            LightPlace::Area(area) => Source::Area(Surface::new(area)),
         };
         let rays = light.rays();
         Lamp { source, rays, share: 1.0 / f64::from(rays), falls_off: light.falls_off() }
     }
 
-    /// Whether its rays go to points that are drawn.
-    #[inline(always)]
-    pub(super) fn is_spread(&self) -> bool {
-        matches!(
-            self.source,
-            Source::Rectangle { .. } | Source::Disc { .. } | Source::Sphere { .. }
-        )
-    }
-
     /// The light as seen from a point.
     #[inline(always)]
     pub(super) fn aim(&self, from: DVec3) -> Aim<'_> {
-        let aim = |arm, across| Aim {
-            lamp: self,
-            arm,
-            reach: 0.0,
-            weight: self.share,
-            across,
-            normal: DVec3::ZERO,
-        };
         match &self.source {
-            Source::Point(point) => aim(*point - from, Across::Nothing),
-            Source::Direction(to_light) => {
-                Aim { reach: f64::INFINITY, ..aim(*to_light, Across::Nothing) }
-            }
+            Source::Point(point) => Aim::Sharp(self.beam(*point - from, self.share)),
+            Source::Direction(to_light) => Aim::Sharp(Beam {
+                to_light: *to_light,
+                distance: f64::INFINITY,
+                weight: self.share as f32,
+            }),
             Source::Spot { at, axis, cone } => {
                 let arm = *at - from;
                 let weight = cone.weight(-arm.normalize_or_zero().dot(*axis));
-                Aim { weight, ..aim(arm, Across::Nothing) }
+                Aim::Sharp(self.beam(arm, weight))
             }
-            Source::Rectangle { corner, edges, normal } => {
-                Aim { normal: *normal, ..aim(*corner - from, Across::Rectangle(*edges)) }
+            Source::Area(surface) => Aim::Spread(self.spread(surface, from)),
+        }
+    }
+
+    /// A ray to where `arm` points to, `weight` being its part of the light without falloff.
+    #[inline(always)]
+    fn beam(&self, arm: DVec3, weight: f64) -> Beam {
+        let weight = match self.falls_off {
+            false => weight,
+            true => weight * (1.0 / arm.length_squared()).min(MOST_NEAR),
+        };
+        Beam { to_light: arm.normalize_or_zero(), distance: arm.length(), weight: weight as f32 }
+    }
+
+    /// Out of line, so that it is not made ready for lights that have no area.
+    #[inline(never)]
+    fn spread(&self, surface: &Surface, from: DVec3) -> Spread<'_> {
+        let flat = |arm, across, round, normal| Spread {
+            lamp: self,
+            arm,
+            across,
+            round,
+            weight: self.share,
+            normal,
+        };
+        match surface {
+            Surface::Rectangle { corner, edges, normal } => {
+                flat(*corner - from, *edges, false, *normal)
             }
-            Source::Disc { center, radii, normal } => {
-                Aim { normal: *normal, ..aim(*center - from, Across::Disc(*radii)) }
-            }
-            Source::Sphere { center, radius } => self.aim_at_ball(*center - from, *radius),
+            Surface::Disc { center, radii, normal } => flat(*center - from, *radii, true, *normal),
+            Surface::Sphere { center, radius } => self.spread_of_ball(*center - from, *radius),
         }
     }
 
     /// A ball as seen from a point: the disc that its tangents from there touch hides exactly as
     /// much as it does. From within it is the disc through its middle.
-    #[inline(always)]
-    fn aim_at_ball(&self, arm: DVec3, radius: f64) -> Aim<'_> {
+    fn spread_of_ball(&self, arm: DVec3, radius: f64) -> Spread<'_> {
         let normal = arm.normalize_or(DVec3::Z);
         let nearer = radius * radius / arm.length_squared();
         let (nearer, part) = if nearer < 1.0 { (nearer, 1.0 - nearer) } else { (0.0, 1.0) };
-        Aim {
+        Spread {
             lamp: self,
             arm: arm - arm * nearer,
-            reach: 0.0,
+            across: radii(normal, radius * part.sqrt()),
+            round: true,
             weight: if self.falls_off { self.share * part } else { self.share },
-            across: Across::Disc(radii(normal, radius * part.sqrt())),
             normal,
         }
     }
 }
 
-impl Aim<'_> {
+impl Spread<'_> {
     /// The ray to the point of the light with these numbers in [0, 1).
     #[inline(always)]
     pub(super) fn beam(&self, numbers: [f64; 2]) -> Beam {
-        if self.reach == f64::INFINITY {
-            return Beam { to_light: self.arm, distance: self.reach, weight: self.weight as f32 };
-        }
-        let arm = match self.across {
-            Across::Nothing => self.arm,
-            Across::Rectangle([u, v]) => self.arm + u * numbers[0] + v * numbers[1],
-            Across::Disc([u, v]) => {
-                let [x, y] = on_disc(numbers);
-                self.arm + u * x + v * y
-            }
-        };
-        let to_light = arm.normalize_or_zero();
+        let [x, y] = if self.round { on_disc(numbers) } else { numbers };
+        let [u, v] = self.across;
+        let arm = self.arm + u * x + v * y;
         let weight = match self.lamp.falls_off {
             false => self.weight,
-            true => {
-                let cosine = match self.across {
-                    Across::Nothing => 1.0,
-                    Across::Rectangle(_) | Across::Disc(_) => self.normal.dot(to_light).abs(),
-                };
-                self.weight * cosine * (1.0 / arm.length_squared()).min(MOST_NEAR)
-            }
+            true => self.weight * self.normal.dot(arm.normalize_or_zero()).abs(),
         };
-        Beam { to_light, distance: arm.length(), weight: weight as f32 }
+        self.lamp.beam(arm, weight)
+    }
+}
+
+impl Surface {
+    fn new(area: &Area) -> Surface {
+        match area {
+            Area::Rectangle { center, along, across } => Surface::Rectangle {
+                corner: *center - (*along + *across) / 2.0,
+                edges: [*along, *across],
+                normal: along.normalize().cross(across.normalize()).normalize_or_zero(),
+            },
+            Area::Disc { center, normal, radius } => {
+                let normal = normal.normalize();
+                Surface::Disc { center: *center, radii: radii(normal, *radius), normal }
+            }
+            Area::Sphere { center, radius } => Surface::Sphere { center: *center, radius: *radius },
+        }
     }
 }
 
@@ -240,10 +246,12 @@ mod tests {
     }
 
     fn beams(lamp: &Lamp, from: DVec3) -> Vec<Beam> {
-        let aim = lamp.aim(from);
         let numbers = [0.0, 0.25, 0.5, 0.999].into_iter();
         let pairs = numbers.clone().flat_map(|u| numbers.clone().map(move |v| [u, v]));
-        pairs.map(|pair| aim.beam(pair)).collect()
+        match lamp.aim(from) {
+            Aim::Sharp(beam) => vec![beam],
+            Aim::Spread(spread) => pairs.map(|pair| spread.beam(pair)).collect(),
+        }
     }
 
     #[test]
@@ -275,7 +283,7 @@ mod tests {
             Area::Sphere { center, radius: 0.7 },
         ] {
             let lamp = lamp(LightPlace::Area(area.clone()));
-            assert!(lamp.is_spread() && lamp.rays == 4);
+            assert!(matches!(lamp.aim(FROM), Aim::Spread(_)) && lamp.rays == 4);
             let mut farthest = 0.0f64;
             for Beam { to_light, distance, weight } in beams(&lamp, FROM) {
                 let offset = FROM + to_light * distance - center;
@@ -319,7 +327,7 @@ mod tests {
     #[test]
     fn light_falls_off_with_the_square_of_the_distance() {
         let point = Light { falloff: 3.0, ..Light::new("l") };
-        let weight = |d: f64| Lamp::new(&point).aim(DVec3::X * d).beam([0.0; 2]).weight;
+        let weight = |d: f64| beams(&Lamp::new(&point), DVec3::X * d)[0].weight;
         assert_eq!([weight(1.0), weight(2.0), weight(10.0)], [1.0, 0.25, 0.01]);
         assert_eq!(weight(1e-30), 1e18);
     }
@@ -330,7 +338,7 @@ mod tests {
         let panel = Light { place: LightPlace::Area(area), falloff: 1.0, ..Light::new("l") };
         let weight = |light: &Light, degrees: f64| {
             let (sin, cos) = degrees.to_radians().sin_cos();
-            Lamp::new(light).aim(DVec3::new(sin, 0.0, -cos) * 2.0).beam([0.3, 0.9]).weight
+            beams(&Lamp::new(light), DVec3::new(sin, 0.0, -cos) * 2.0)[0].weight
         };
         for (degrees, expected) in [(0.0, 0.25), (60.0, 0.125), (120.0, 0.125), (180.0, 0.25)] {
             assert!((weight(&panel, degrees) - expected).abs() < 1e-6, "{degrees}°");
@@ -350,7 +358,7 @@ mod tests {
         };
         let weight = |edge: f64, degrees: f64| {
             let (sin, cos) = degrees.to_radians().sin_cos();
-            lamp(spot(edge)).aim(DVec3::new(sin, 0.0, -cos)).beam([0.0; 2]).weight
+            beams(&lamp(spot(edge)), DVec3::new(sin, 0.0, -cos))[0].weight
         };
         for edge in [0.0, 0.5, 1.0] {
             assert_eq!([weight(edge, 0.0), weight(edge, 60.5), weight(edge, 170.0)], [1., 0., 0.]);
@@ -367,6 +375,6 @@ mod tests {
             angle_degrees: 180.0,
             edge: 0.0,
         };
-        assert_eq!(lamp(all).aim(DVec3::new(0.1, 0.0, 1.0)).beam([0.0; 2]).weight, 1.0);
+        assert_eq!(beams(&lamp(all), DVec3::new(0.1, 0.0, 1.0))[0].weight, 1.0);
     }
 }

@@ -67,7 +67,7 @@ pub fn highlight(model: Model, lit: &Lit, eta: f64) -> Lobe {
     match model {
         Model::Phong | Model::Blinn => Lobe::of_cosine(from_peak, 1.0),
         Model::Hall => Lobe::of_cosine(from_peak, fresnel(lit.to_eye.dot(half), eta)),
-        Model::CookTorrance => facets(lit, half, n_dot_l, eta),
+        Model::CookTorrance => facets(*lit, half, n_dot_l, eta),
     }
 }
 
@@ -75,7 +75,7 @@ pub fn highlight(model: Model, lit: &Lit, eta: f64) -> Lobe {
 ///
 /// G is the shadowing of V-shaped grooves, which does not depend on the slope. Cook & Torrance,
 /// "A Reflectance Model for Computer Graphics" (1982), with 4 in place of their π.
-fn facets(lit: &Lit, half: DVec3, n_dot_l: f64, eta: f64) -> Lobe {
+fn facets(lit: Lit, half: DVec3, n_dot_l: f64, eta: f64) -> Lobe {
     let n_dot_h = lit.normal.dot(half);
     let n_dot_v = lit.normal.dot(lit.to_eye);
     let v_dot_h = lit.to_eye.dot(half);
@@ -92,11 +92,14 @@ fn facets(lit: &Lit, half: DVec3, n_dot_l: f64, eta: f64) -> Lobe {
     if sound { Lobe { angle: tangent2 as f32, weight } } else { Lobe::NONE }
 }
 
-/// Hall's transmitted highlight of a light behind a surface: T·L and 1 − F, `through` = T being the
-/// direction of the refracted ray and `reflectance` = F(N·V).
-#[inline(always)]
-pub fn transmitted(through: DVec3, to_light: DVec3, reflectance: f64) -> Lobe {
-    Lobe::of_cosine((through - to_light).length_squared() / 2.0, 1.0 - reflectance)
+/// Hall's transmitted highlight of a light behind a surface: T·L and 1 − F(N·V), `through` = T being
+/// the direction of the refracted ray, with N·V and index in front / index behind.
+///
+/// Out of line: inlined, F would be computed at every node before its lights.
+#[inline(never)]
+pub fn transmitted(through: DVec3, to_light: DVec3, (cosine, eta): (f64, f64)) -> Lobe {
+    let weight = 1.0 - fresnel(cosine, eta);
+    Lobe::of_cosine((through - to_light).length_squared() / 2.0, weight)
 }
 
 /// Fresnel's reflectance of unpolarised light at a dielectric, `cosine` in [0, 1] between ray and
@@ -252,10 +255,10 @@ mod tests {
 
     #[test]
     fn hall_transmits_what_it_does_not_reflect() {
-        let through = transmitted(-DVec3::Z, -DVec3::Z, 0.04);
+        let through = transmitted(-DVec3::Z, -DVec3::Z, (1.0, 1.5));
         assert_eq!(through, Lobe { angle: 0.0, weight: 0.96 });
-        assert_eq!(transmitted(-DVec3::Z, DVec3::X, 0.04), Lobe::NONE);
-        assert_eq!(transmitted(-DVec3::Z, -DVec3::Z, 1.0), Lobe::NONE);
+        assert_eq!(transmitted(-DVec3::Z, DVec3::X, (1.0, 1.5)), Lobe::NONE);
+        assert_eq!(transmitted(-DVec3::Z, -DVec3::Z, (0.1, 1.5)), Lobe::NONE);
     }
 
     #[test]
@@ -272,7 +275,7 @@ mod tests {
                         assert!(lobe.weight >= 0.0, "{lobe:?}");
                         lit_up += usize::from(lobe.weight > 0.0);
                     }
-                    let behind = transmitted(to_eye, to_light, 0.5);
+                    let behind = transmitted(to_eye, to_light, (0.5, 1.5));
                     assert!(behind.angle.is_finite() && behind.weight.is_finite());
                 }
             }

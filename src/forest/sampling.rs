@@ -1,5 +1,7 @@
 //! The numbers of samples, which depend on the pixel, the sample's index, the effect and the branch alone.
 
+use super::sequence::second;
+
 /// One of the samples of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
@@ -47,7 +49,7 @@ impl Sample {
         match effect {
             Effect::Position => {
                 let u = scramble(index.reverse_bits(), hash(seed ^ 0x51ed_270b));
-                let v = scramble(sobol_second(index), hash(seed ^ 0x2545_f491));
+                let v = scramble(second(index), hash(seed ^ 0x2545_f491));
                 [unit(u), unit(v)]
             }
             _ => {
@@ -73,7 +75,7 @@ fn dimension_seed(seed: u32, dimension: u32) -> u32 {
 fn below_root(seed: u32, index: u32, effect: Effect) -> [f64; 2] {
     let [a, b] = dimensions(effect).map(|d| dimension_seed(seed, d));
     let own = scramble(index, hash(a ^ b)) & (MOST_SAMPLES - 1);
-    [unit(scramble(own.reverse_bits(), a)), unit(scramble(sobol_second(own), b))]
+    [unit(scramble(own.reverse_bits(), a)), unit(scramble(second(own), b))]
 }
 
 /// Samples of a pixel at most.
@@ -168,20 +170,6 @@ const fn directions() -> [[u32; INDEX_BITS]; 10] {
     all
 }
 
-/// The second dimension of the Sobol sequence as a 32-bit fraction.
-fn sobol_second(mut index: u32) -> u32 {
-    let mut direction = 1u32 << 31;
-    let mut fraction = 0;
-    while index != 0 {
-        if index & 1 != 0 {
-            fraction ^= direction;
-        }
-        direction ^= direction >> 1;
-        index >>= 1;
-    }
-    fraction
-}
-
 /// Nested uniform scrambling of a fraction's bits, from the highest down.
 #[inline(always)]
 pub(super) fn scramble(fraction: u32, seed: u32) -> u32 {
@@ -247,7 +235,7 @@ mod tests {
     fn closed_forms_are_the_sequence() {
         for index in 0..MOST_SAMPLES {
             assert_eq!(sobol(0, index), index.reverse_bits());
-            assert_eq!(sobol(1, index), sobol_second(index));
+            assert_eq!(sobol(1, index), second(index));
         }
     }
 

@@ -13,7 +13,7 @@ pub(super) fn branch_path(path: u32, transmitted: bool) -> u32 {
 /// A sequence of points of the unit square, every power of two of which is stratified: the first two
 /// dimensions of Sobol's, scrambled, and visited in an order of its own, so that it knows nothing of
 /// the pixel's other sequences (Burley, *Practical Hash-based Owen Scrambling*, JCGT 9(4), 2020).
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sequence {
     order: u32,
     seeds: [u32; 2],
@@ -22,7 +22,9 @@ pub(super) struct Sequence {
 impl Sequence {
     /// The one that all lights at a node draw from: a light with n samples takes the points n·i to
     /// n·i + n − 1 for the pixel's sample i. It depends on the pixel and the node's path alone.
-    #[inline(always)]
+    ///
+    /// Out of line, so that it is not made ready for lights that have no area.
+    #[inline(never)]
     pub(super) fn of_lights(Sample { pixel: [x, y], index: _ }: Sample, path: u32) -> Sequence {
         let seed = hash(x ^ hash(y ^ hash(path ^ hash(Effect::Light as u32))));
         let [order, u, v] = [0x9e37_79b9, 0x3c6e_f372, 0xdaa6_6d2b].map(|salt| hash(seed ^ salt));
@@ -41,7 +43,7 @@ impl Sequence {
 /// The second dimension of the Sobol sequence as a 32-bit fraction, for indices of all 32 bits: bit
 /// 31 − i is the parity of the index' bits k with i ⊂ k, which is where Pascal's triangle is odd.
 #[inline(always)]
-fn second(index: u32) -> u32 {
+pub(super) fn second(index: u32) -> u32 {
     let mut w = index;
     w ^= w >> 1 & 0x5555_5555;
     w ^= w >> 2 & 0x3333_3333;

@@ -5,13 +5,13 @@ use glam::DVec3;
 
 use super::grow::{Grower, MOST_CROSSED, Stop, Worker};
 use super::kept::{Met, Recalled};
-use super::lamp::Beam;
+use super::lamp::{Aim, Beam};
 use super::lobe::{self, Lit, Lobe};
 use super::search::Sought;
 use super::sequence::Sequence;
 use super::sink::Sink;
 use super::surface::Surface;
-use super::tree::{BEHIND, LightHit};
+use super::tree::LightHit;
 use crate::geometry::Interaction;
 use crate::scene::model::Model;
 
@@ -48,35 +48,41 @@ impl Grower<'_> {
         simd: S,
         worker: &mut Worker,
         site: &Site<'_>,
-        light: u16,
+        light: usize,
         recalled: &mut Option<Recalled<'_>>,
         sink: &mut K,
     ) -> Result<(), Stop> {
-        let lamp = &self.lamps[light as usize];
-        let key = self.keys[light as usize];
+        let (lamp, key, light) = (&self.lamps[light], self.keys[light], light as u16);
         let aim = lamp.aim(site.at.point);
-        let points = lamp.is_spread().then(|| Sequence::of_lights(worker.sample, site.path));
+        let points = match aim {
+            Aim::Sharp(_) => Sequence::default(),
+            Aim::Spread(_) => Sequence::of_lights(worker.sample, site.path),
+        };
         let first = worker.sample.index * lamp.rays;
-        let idle = LightHit { crossed: BEHIND, ..LightHit::stopped(light) };
         let (mut begun, mut known) = (false, true);
-        for ray in 0..lamp.rays {
+        let mut ray = 0;
+        loop {
             // Either all of its rays are known or none.
             let met = recalled.as_mut().filter(|_| known).and_then(|r| r.light(key));
             known = met.is_some();
-            let beam = aim.beam(points.map_or([0.0; 2], |points| points.point(first + ray)));
-            let Some(reach) = self.reach(site, &beam) else {
-                if begun {
-                    sink.light(idle, &[]);
-                }
-                continue;
+            let beam = match &aim {
+                Aim::Sharp(beam) => *beam,
+                Aim::Spread(spread) => spread.beam(points.point(first + ray)),
             };
-            if !begun {
-                (0..ray).for_each(|_| sink.light(idle, &[]));
-                begun = true;
+            if let Some(reach) = self.reach(site, &beam) {
+                if !begun {
+                    (0..ray).for_each(|_| sink.light(LightHit::idle(light), &[]));
+                    begun = true;
+                }
+                self.ray(simd, worker, site, (light, &beam, reach), met, sink)?;
+            } else if begun {
+                sink.light(LightHit::idle(light), &[]);
             }
-            self.ray(simd, worker, site, (light, &beam, reach), met, sink)?;
+            ray += 1;
+            if ray >= lamp.rays {
+                return Ok(());
+            }
         }
-        Ok(())
     }
 
     /// Whether a light's ray is in front of the geometric surface, or shines through it.
@@ -97,7 +103,8 @@ impl Grower<'_> {
     fn behind(&self, material: u16, surface: &Surface, to_light: DVec3) -> Lobe {
         match (self.models[material as usize], surface.refracted) {
             (Model::Hall, Some(through)) if surface.geometric.dot(to_light) < 0.0 => {
-                lobe::transmitted(through, to_light, surface.reflectance())
+                let cosine = surface.normal.dot(surface.to_eye).min(1.0);
+                lobe::transmitted(through, to_light, (cosine, surface.contrast))
             }
             _ => Lobe::NONE,
         }

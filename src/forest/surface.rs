@@ -46,6 +46,7 @@ impl Surface {
 
     /// The least way out of the surface of a ray that goes on from a bump: flatter ones than the ray
     /// that arrives are not lifted as high.
+    #[inline(always)]
     fn least_rise(&self) -> f64 {
         LEAST_RISE.min(0.9 * self.geometric.dot(self.to_eye).max(0.0))
     }

@@ -5,14 +5,23 @@ use super::sink::Sink;
 use crate::geometry::{Interaction, Ray, Stack, Tone};
 
 impl Grower<'_> {
-    /// Bends the normal at a hit at the end of a path of this length, and gives what colours it in place
-    /// of its slot.
+    /// The hit at the end of a path of this length, its normal bent, and what colours it in place of its
+    /// slot.
     #[inline(always)]
-    pub(super) fn tone(&self, stack: &Stack, at: &mut Interaction, length: f64) -> Option<Tone> {
-        match self.geometry.is_plain() {
-            true => None,
-            false => self.geometry.finish(stack, at, self.cone.width(length)),
+    pub(super) fn tone(
+        &self,
+        stack: &Stack,
+        mut at: Interaction,
+        length: f64,
+    ) -> (Interaction, Option<Tone>) {
+        if self.geometry.is_plain() {
+            return (at, None);
         }
+        let (bent, tone) = self.geometry.finish(stack, at, self.cone.width(length));
+        if let Some(normal) = bent {
+            (at.shading_normal, at.bumped) = (normal, true);
+        }
+        (at, tone)
     }
 
     /// Hands on what a ray saw that left the scene, if the background is not one colour.

@@ -167,6 +167,11 @@ impl LightHit {
         LightHit { light, crossed: BLOCKED, n_dot_l: 0.0, angle: 1.0, weight: 0.0 }
     }
 
+    /// A ray that has nothing to show, beside others to the same light that have.
+    pub fn idle(light: u16) -> LightHit {
+        LightHit { crossed: BEHIND, ..LightHit::stopped(light) }
+    }
+
     /// Whether it is the transmitted highlight of a light behind the surface.
     #[inline(always)]
     pub fn is_behind(&self) -> bool {

@@ -20,7 +20,9 @@ impl Geometry {
         let ((point, geometric_normal, smooth), rest) = match solid.item.kind {
             Kind::Moving => {
                 let index = solid.item.index;
-                all.moving[index as usize].surface(index, &stack.moment, ray, hit)
+                let moving = &all.moving[index as usize];
+                let (surface, rest) = moving.surface(index, &stack.moment, ray, hit);
+                (in_registers(surface), rest)
             }
             Kind::Leaf => {
                 let (whole, leaf) = all.leaf(hit.primitive);
@@ -51,6 +53,12 @@ impl Geometry {
             primitive: hit.primitive,
         }
     }
+}
+
+/// A surface that comes from a call, piece by piece: else every surface would be passed in memory.
+#[inline(always)]
+fn in_registers((point, normal, smooth): Surface) -> Surface {
+    (point, normal, smooth)
 }
 
 /// The slot of the world-space cube that a point lies in; a point on a cube's boundary belongs to
@@ -177,7 +185,7 @@ impl Primitives {
         match solid.item.kind {
             Kind::Sphere => sphere_surface(&self.spheres[index], ray, hit.t),
             Kind::Triangle => triangle_surface(self, index, ray, hit.t),
-            Kind::Shape => form_surface(&self.shapes[index].form, ray, hit.t),
+            Kind::Shape => in_registers(form_surface(&self.shapes[index].form, ray, hit.t)),
             Kind::Plane => plane_surface(&self.planes[index], ray, hit.t),
             Kind::Moving | Kind::Leaf => unreachable!("it has primitives of its own"),
         }

@@ -237,15 +237,20 @@ impl Geometry {
         self.surfaces.is_plain()
     }
 
-    /// Bends the shading normal at a hit by its material's bump, and gives the tone of its colour,
-    /// `None` if it is that of its slot. A piece of the surface `footprint` wide is looked at.
-    pub fn finish(&self, stack: &Stack, at: &mut Interaction, footprint: f64) -> Option<Tone> {
+    /// The shading normal at a hit if its material's bump bends it, and the tone of its colour, `None` if
+    /// it is that of its slot. A piece of the surface `footprint` wide is looked at.
+    pub fn finish(
+        &self,
+        stack: &Stack,
+        at: Interaction,
+        footprint: f64,
+    ) -> (Option<DVec3>, Option<Tone>) {
         let look = self.surfaces.look(at.material);
         let owner = self.primitives.owner(at.primitive);
         let uv = || match owner {
-            Owner::Still => self.primitives.uv(at.solid, at),
-            Owner::Moving(index, moving) => moving.uv(index, &stack.moment, at),
-            Owner::Leaf(leaf) => leaf.uv(stack.time(), at),
+            Owner::Still => self.primitives.uv(at.solid, &at),
+            Owner::Moving(index, moving) => moving.uv(index, &stack.moment, &at),
+            Owner::Leaf(leaf) => leaf.uv(stack.time(), &at),
         };
         let mut gradient = look.relief.gradient(at.rest, footprint, uv);
         let tone = look.pattern.tone(at.rest, footprint, uv);
@@ -254,10 +259,7 @@ impl Geometry {
             Owner::Moving(index, moving) => moving.turned(index, &stack.moment, gradient),
             Owner::Leaf(leaf) => leaf.turned(stack.time(), gradient),
         };
-        if let Some(normal) = bump::bent(at.shading_normal, gradient) {
-            (at.shading_normal, at.bumped) = (normal, true);
-        }
-        tone
+        (bump::bent(at.shading_normal, gradient), tone)
     }
 
     /// The tone of the background in a unit direction, of which a cone `angle` radians wide is looked

@@ -142,9 +142,10 @@ impl Moving {
         let pose = self.pose(index, &mut moment);
         let Some(entries) = &mut moment.entries else { return };
         let ray = pose.ray_to_rest(walk.ray);
+        let from = (walk.leaving, pose.slack(walk.ray));
         // Nothing in it moves.
         let resting = RefCell::default();
-        let within = Walk::new(&ray, walk.leaving, pose.slack(walk.ray), &resting);
+        let within = Walk::new(&self.rest.primitives, &ray, from, &resting);
         dispatch!(level, simd => self.rest.descend(simd, entries, &within, query));
     }
 

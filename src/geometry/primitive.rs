@@ -139,6 +139,18 @@ impl Plane {
 }
 
 impl Form {
+    /// Whether its roots are decided by its corners as the ray sees them.
+    pub(super) fn is_sheared(&self) -> bool {
+        match self {
+            Form::Polygon(..) => true,
+            Form::Cuboid(..) | Form::PlacedCuboid(..) | Form::Ellipsoid(..) | Form::Closed(_) => {
+                false
+            }
+            // What meets rays itself shears its own.
+            Form::Moving(_) | Form::Composite(_) => false,
+        }
+    }
+
     /// Entry and exit, or the one crossing of a surface.
     #[inline(always)]
     pub(super) fn roots(&self, ray: &Ray, shear: &Shear, start: Start) -> Roots {

@@ -1,21 +1,30 @@
 //! What is asked of a ray: the closest hit, or what stands before a light.
 
+use std::cell::Cell;
+
 use super::Hit;
 use super::compile::Primitives;
 
 /// Collects crossings while the hierarchy is walked.
-pub(super) trait Query {
+pub(super) trait Query: Sized {
     /// Whether every crossing of a primitive counts, and not only its first.
     const ALL: bool;
 
     /// Crossings beyond this `t` are of no use; those at it may be.
     fn limit(&self) -> f64;
 
-    /// A crossing at `t > 0`.
+    /// A crossing at `t > 0`, finite if all count.
     fn offer(&mut self, t: f64, primitive: u32);
 
     /// Whether the answer is known.
     fn is_done(&self) -> bool;
+
+    /// Hands it to code that is not inlined. What is asked of every ray lends a copy and takes it
+    /// back, so that the walk's own stays in registers.
+    #[inline(always)]
+    fn lend(&mut self, to: impl FnOnce(&mut Self)) {
+        to(self);
+    }
 }
 
 /// All crossings, in no order.
@@ -49,7 +58,7 @@ impl Query for Gather<'_> {
 const HARDLY_FARTHER: f64 = 1.0 + 1e-8;
 
 /// The smallest `t`; of equal ones the lowest primitive.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Closest {
     t: f64,
     primitive: u32,
@@ -99,16 +108,23 @@ impl Query for Closest {
     fn is_done(&self) -> bool {
         false
     }
+
+    #[inline(always)]
+    fn lend(&mut self, to: impl FnOnce(&mut Self)) {
+        let mut copy = *self;
+        to(&mut copy);
+        *self = copy;
+    }
 }
 
 /// The solids before a light at `t_max`, until one is opaque.
-#[derive(Debug)]
+#[derive(Clone, Copy)]
 pub(super) struct Shadow<'a> {
     primitives: &'a Primitives,
     t_max: f64,
     /// Per solid.
     opaque: &'a [bool],
-    crossed: &'a mut Vec<u32>,
+    crossed: &'a Cell<Vec<u32>>,
     blocker: Option<u32>,
 }
 
@@ -121,7 +137,7 @@ impl<'a> Shadow<'a> {
         opaque: &'a [bool],
         crossed: &'a mut Vec<u32>,
     ) -> Shadow<'a> {
-        Shadow { primitives, t_max, opaque, crossed, blocker: None }
+        Shadow { primitives, t_max, opaque, crossed: Cell::from_mut(crossed), blocker: None }
     }
 
     /// The opaque solid that was met.
@@ -146,7 +162,9 @@ impl Query for Shadow<'_> {
             if self.opaque[solid as usize] {
                 self.blocker = Some(solid);
             } else {
-                self.crossed.push(solid);
+                let mut crossed = self.crossed.take();
+                crossed.push(solid);
+                self.crossed.set(crossed);
             }
         }
     }
@@ -154,5 +172,12 @@ impl Query for Shadow<'_> {
     #[inline(always)]
     fn is_done(&self) -> bool {
         self.blocker.is_some()
+    }
+
+    #[inline(always)]
+    fn lend(&mut self, to: impl FnOnce(&mut Self)) {
+        let mut copy = *self;
+        to(&mut copy);
+        *self = copy;
     }
 }

@@ -54,6 +54,10 @@ pub(super) struct Crossing {
 }
 
 impl Shear {
+    /// Where nothing has corners.
+    pub(super) const UNUSED: Shear =
+        Shear { axis: [0; 3], origin: [0.0; 3], slope: [0.0; 2], per_depth: 0.0 };
+
     /// The direction may have any length but zero.
     #[inline(always)]
     pub(super) fn new(ray: &Ray) -> Shear {
@@ -96,27 +100,9 @@ impl Shear {
             return None;
         }
         if u == 0.0 || v == 0.0 || w == 0.0 {
-            return self.triangle_on_edge([a, b, c]);
+            return triangle_on_edge([a, b, c], self.per_depth);
         }
-        self.crossing([a, b, c], [u, v, w])
-    }
-
-    /// The ray passes, as far as rounded products tell, through an edge.
-    #[cold]
-    #[inline(never)]
-    fn triangle_on_edge(&self, [a, b, c]: [Seen; 3]) -> Option<Crossing> {
-        let sides = [exact_side(b, c), exact_side(c, a), exact_side(a, b)];
-        let left = [left_of(b, c), left_of(c, a), left_of(a, b)];
-        let inside = left == [true; 3] || left == [false; 3];
-        if inside { self.crossing([a, b, c], sides) } else { None }
-    }
-
-    #[inline(always)]
-    fn crossing(&self, [a, b, c]: [Seen; 3], [u, v, w]: [f64; 3]) -> Option<Crossing> {
-        let scale = 1.0 / (u + v + w);
-        let weights = [u * scale, v * scale, w * scale];
-        let t = (weights[0] * a.z + weights[1] * b.z + weights[2] * c.z) * self.per_depth;
-        t.is_finite().then_some(Crossing { t, weights })
+        crossing([a, b, c], [u, v, w], self.per_depth)
     }
 
     /// Whether the ray's line passes through the polygon, by the even-odd rule.
@@ -135,6 +121,24 @@ impl Shear {
         }
         inside
     }
+}
+
+/// The ray passes, as far as rounded products tell, through an edge.
+#[cold]
+#[inline(never)]
+fn triangle_on_edge([a, b, c]: [Seen; 3], per_depth: f64) -> Option<Crossing> {
+    let sides = [exact_side(b, c), exact_side(c, a), exact_side(a, b)];
+    let left = [left_of(b, c), left_of(c, a), left_of(a, b)];
+    let inside = left == [true; 3] || left == [false; 3];
+    if inside { crossing([a, b, c], sides, per_depth) } else { None }
+}
+
+#[inline(always)]
+fn crossing([a, b, c]: [Seen; 3], [u, v, w]: [f64; 3], per_depth: f64) -> Option<Crossing> {
+    let scale = 1.0 / (u + v + w);
+    let weights = [u * scale, v * scale, w * scale];
+    let t = (weights[0] * a.z + weights[1] * b.z + weights[2] * c.z) * per_depth;
+    t.is_finite().then_some(Crossing { t, weights })
 }
 
 /// Twice the area of the triangle (0, p, q). The sign is exact unless the value is 0: rounding keeps

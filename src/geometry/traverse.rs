@@ -6,6 +6,7 @@ use fearless_simd::{Level, Simd, f32x8, prelude::*};
 
 use glam::DVec3;
 
+use super::compile::Primitives;
 use super::hierarchy::{Child, Frame, Node, STACK, Stack, Target};
 use super::motion::Moment;
 use super::packet::{ShapePacket, SpherePacket, TrianglePacket, WIDTH};
@@ -43,8 +44,10 @@ pub(super) struct Beam<S: Simd> {
 }
 
 /// What a leaf needs beside the packet.
+#[derive(Clone, Copy)]
 pub(super) struct Walk<'a> {
     pub(super) ray: &'a Ray,
+    /// Of no use where nothing has corners.
     shear: Shear,
     pub(super) leaving: Departure,
     /// By how much the origin may be off beyond its own rounding, world units.
@@ -54,14 +57,16 @@ pub(super) struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
+    /// Among some primitives.
     #[inline(always)]
     pub(super) fn new(
+        among: &Primitives,
         ray: &'a Ray,
-        leaving: Departure,
-        slack: f64,
+        (leaving, slack): (Departure, f64),
         moment: &'a RefCell<Moment>,
     ) -> Walk<'a> {
-        Walk { ray, shear: Shear::new(ray), leaving, slack, moment }
+        let shear = if among.sheared { Shear::new(ray) } else { Shear::UNUSED };
+        Walk { ray, shear, leaving, slack, moment }
     }
 }
 
@@ -142,15 +147,17 @@ impl Geometry {
         query: &mut Q,
     ) {
         let Stack { entries, moment } = stack;
-        let walk = Walk::new(ray, self.departure(leaving), 0.0, moment);
+        let walk = Walk::new(&self.primitives, ray, (self.departure(leaving), 0.0), moment);
         for plane in &self.primitives.planes {
             let t = plane.root(ray, walk.leaving.start_of(plane.primitive));
-            if t > 0.0 && t < f64::INFINITY {
+            // Of the nearest crossing an infinite one is none.
+            if t > 0.0 && (!Q::ALL || t < f64::INFINITY) {
                 query.offer(t, plane.primitive);
             }
         }
         for &index in &self.primitives.unbounded {
-            self.primitives.composites[index as usize].meet(simd.level(), &walk, query);
+            let (composite, walk) = (&self.primitives.composites[index as usize], walk);
+            query.lend(|query| composite.meet(simd.level(), &walk, query));
         }
         self.descend(simd, entries, &walk, query);
     }
@@ -278,16 +285,19 @@ impl Geometry {
     fn shape<Q: Query>(&self, level: Level, item: usize, walk: &Walk<'_>, query: &mut Q) {
         let shape = &self.primitives.shapes[item];
         if let Form::Moving(index) = shape.form {
-            self.primitives.moving[index as usize].meet(level, index, walk, query);
+            let moving = &self.primitives.moving[index as usize];
+            let walk = *walk;
+            query.lend(|query| moving.meet(level, index, &walk, query));
             return;
         }
         if let Form::Composite(index) = shape.form {
-            self.primitives.composites[index as usize].meet(level, walk, query);
+            let (composite, walk) = (&self.primitives.composites[index as usize], *walk);
+            query.lend(|query| composite.meet(level, &walk, query));
             return;
         }
         let start = walk.leaving.start_of(shape.primitive);
         if let Form::Closed(closed) = &shape.form {
-            closed.meet(walk.ray, start, shape.primitive, query);
+            query.lend(|query| closed.meet(walk.ray, start, shape.primitive, query));
             return;
         }
         offer_roots(shape.form.roots(walk.ray, &walk.shear, start), shape.primitive, query);
@@ -317,7 +327,7 @@ impl Geometry {
     ) {
         let all = &self.primitives;
         let moment = RefCell::new(Moment::new(all, time));
-        let walk = Walk::new(ray, self.departure(leaving), 0.0, &moment);
+        let walk = Walk::new(all, ray, (self.departure(leaving), 0.0), &moment);
         for plane in &all.planes {
             let t = plane.root(ray, walk.leaving.start_of(plane.primitive));
             if t > 0.0 && t < f64::INFINITY {

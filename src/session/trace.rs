@@ -153,31 +153,37 @@ impl AddAssign for TraceReport {
     }
 }
 
-/// Traces `scene` without keeping anything: what the same rays cost by themselves.
+/// Traces some tiles of `scene` without keeping anything: what the same rays cost by themselves. Where
+/// sampling is adaptive, the first samples are kept for a while, as for a trace.
 pub fn trace_only(
-    scene: &Scene,
+    (scene, tiles): (&Scene, &[usize]),
     geometry: &Geometry,
     pool: &ThreadPool,
     progress: &Progress,
 ) -> Result<TraceReport, TraceError> {
     let start = Instant::now();
-    let grower = Grower::new(scene, geometry);
-    let tiles = Layout::new(scene.picture.size).tiles();
-    progress.begin(tiles as u64);
+    progress.begin(tiles.len() as u64);
+    let wanted = PixelSet::of_tiles(Layout::new(scene.picture.size), tiles.iter().copied());
+    let pilots = Pilots::trace((scene, &wanted), geometry, Some(pool), u64::MAX, progress)?;
+    let grower = Grower::new(scene, geometry).with_map(pilots.map.as_deref());
     let next = AtomicUsize::new(0);
     let counts = pool.broadcast(|_| -> Result<RayCounts, TraceError> {
         let mut worker = grower.worker();
-        while let Some(tile) = claim(&next, tiles) {
+        while let Some(place) = claim(&next, tiles.len()) {
+            let (tile, mut sink) = (tiles[place], Discard);
+            let known = pilots.tree(tile);
             for block in 0..TILE_BLOCKS {
-                let at = (tile, block);
-                let grown = grower.block(&mut worker, at, &mut Discard, usize::MAX, progress);
-                grown.map_err(|stop| TraceError::of(stop, usize::MAX))?;
+                let first = known.map(|trees| trees.recall_current(block));
+                let known = Recalls { first, rest: None };
+                let (at, most) = ((tile, block), usize::MAX);
+                let grown = grower.block_again(&mut worker, at, known, &mut sink, most, progress);
+                grown.map_err(|stop| TraceError::of(stop, most))?;
             }
             progress.step();
         }
         Ok(worker.rays)
     });
-    let mut rays = RayCounts::default();
+    let mut rays = pilots.rays;
     for count in counts {
         rays += count?;
     }

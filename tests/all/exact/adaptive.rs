@@ -9,6 +9,7 @@ use rayforest::scene::path::parameters;
 use rayforest::scene::{Scene, read};
 use rayforest::session::Class::{self, Regrow, Reshade, Retrace};
 use rayforest::session::still::Still;
+use rayforest::session::trace::trace_only;
 use rayforest::session::{Options, Session, cache};
 use rayon::ThreadPoolBuilder;
 
@@ -41,6 +42,9 @@ fn threads_memory_and_parts_change_no_bit() {
         let still = Still { scene: &scene, geometry: &geometry, pool: &pool, memory: PLENTY };
         let (film, _) = still.film(&Progress::default()).unwrap();
         assert_eq!(film_difference(&film, &whole.film()), None, "{name}: a still");
+        let tiles: Vec<usize> = (0..film.layout.tiles()).collect();
+        let alone = trace_only((&scene, &tiles), &geometry, &pool, &Progress::default()).unwrap();
+        assert_eq!(alone.rays, whole.trace_report().rays, "{name}: rays alone");
         let (tile, _) = still.light(&[4], &Progress::default()).unwrap();
         let blocks = whole.film().blocks;
         assert!(tile[..] == blocks[4 * 64..5 * 64], "{name}: one tile alone");
