@@ -3,8 +3,9 @@
 use fearless_simd::{Simd, dispatch};
 use glam::DVec3;
 
-use super::grow::{Arrival, Grower, Known, Limits, Pending, Stop, Worker, aimed, branch, known};
+use super::grow::{Arrival, Grower, Limits, Stop, Worker, aimed, branch};
 use super::kept::{KeptLight, KeptNode, KeptTrees, Recall, Recalled};
+use super::pending::{Known, Pending, known};
 use super::sampling::Sample;
 use super::scope::{At, Scope};
 use super::sequence::branch_path;

@@ -12,6 +12,7 @@ pub mod kept;
 mod lamp;
 pub mod lobe;
 mod media;
+mod pending;
 mod rays;
 pub mod sampling;
 pub mod scope;

@@ -8,9 +8,10 @@
 
 use fearless_simd::Simd;
 
-use super::grow::{Grower, Pending, Worker};
+use super::grow::{Grower, Worker};
 use super::kept::KeptNode;
 use super::media::Media;
+use super::pending::Pending;
 use crate::geometry::{Hit, Interaction, Leaving, Ray};
 
 /// Surfaces nearer to each other, along their normals, than this share of the coordinates are one.

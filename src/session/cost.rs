@@ -6,7 +6,7 @@ use super::{Session, Work};
 use crate::film::layout::Layout;
 use crate::scene::change::Change;
 use crate::scene::refine::Refine;
-use crate::scene::{Scene, path};
+use crate::scene::{Material, Scene, path};
 
 /// The cost of setting one parameter to another value, all others staying as they are.
 ///
@@ -77,7 +77,7 @@ impl Pixels {
 /// parameter (and falls with the cut-off), so the greatest value is sought at which no term of the
 /// frontier lives. So are the pixels.
 pub fn cost(session: &mut Session, path: &str) -> Option<Cost> {
-    let altered = path::altered(session.scene(), path)?;
+    let altered = dearest(session.scene(), path::altered(session.scene(), path)?);
     let special =
         cost_of_refraction(session, &altered).or_else(|| cost_of_falloff(session, &altered));
     if special.is_some() {
@@ -88,6 +88,18 @@ pub fn cost(session: &mut Session, path: &str) -> Option<Cost> {
         Some(knob) if !session.compares_colors() => cost_of_knob(session, knob),
         _ => cost_of(session, &altered),
     })
+}
+
+/// The altered scene, but where a solid's material is another, one with another priority, if there is
+/// one: it costs the most.
+fn dearest(scene: &Scene, mut altered: Scene) -> Scene {
+    let mut solids = scene.solids.iter().zip(&mut altered.solids);
+    if let Some((old, new)) = solids.find(|(old, new)| old.material != new.material) {
+        let priority = scene.materials.get(old.material).map(|material| material.priority);
+        let other = |material: &Material| Some(material.priority) != priority;
+        new.material = scene.materials.iter().position(other).unwrap_or(new.material);
+    }
+    altered
 }
 
 impl Session {
@@ -138,7 +150,7 @@ fn cost_of_falloff(session: &mut Session, altered: &Scene) -> Option<Cost> {
 /// The same while the scene is still traced or grown and `session` holds a preview of it: `None` also
 /// where only the whole picture's trees can tell.
 pub fn cost_of_preview(session: &mut Session, path: &str) -> Option<Cost> {
-    let altered = path::altered(session.scene(), path)?;
+    let altered = dearest(session.scene(), path::altered(session.scene(), path)?);
     let falls_off = cost_of_falloff(session, &altered).is_some();
     let (old, new) = (&session.scene().trace, &altered.trace);
     // With the samples of a preview nothing is adaptive.

@@ -65,7 +65,8 @@ fn others(scene: &Scene, parameter: &Parameter) -> Vec<Scene> {
         .chain(["[0.1, 0.2, 0.3]", "[0, 2, 0.5]", "[3, 5]", "[9, 31]", "1e6"])
         .map(str::to_owned)
         .collect();
-    values.extend(scene.materials.iter().take(2).map(|m| m.name.clone()));
+    let ranks = scene.materials.iter().filter(|m| m.priority != scene.materials[0].priority);
+    values.extend(scene.materials.iter().take(2).chain(ranks.take(1)).map(|m| m.name.clone()));
     let legal = values.into_iter().filter_map(|value| {
         let mut other = scene.clone();
         path::set(&mut other, &parameter.path, &value).ok()?;
@@ -136,6 +137,12 @@ fn lie(session: &mut Session, parameter: &Parameter, cost: Cost) -> Option<Strin
         Cost::Regrow(_) => {
             let grown = |class: Class| class == Class::Regrow || class == Class::Refold;
             others(&scene, parameter).iter().find_map(|e| claim(e, &grown))
+        }
+        // Only materials that have another priority trace all.
+        Cost::TraceAll if parameter.kind == Kind::Material => {
+            let mut classes = others(&scene, parameter).into_iter().map(|e| class(&e));
+            let some = classes.any(|class| class == Class::Retrace);
+            (!some).then(|| format!("{} is {cost:?}, but no edit is", parameter.path))
         }
         Cost::TraceAll => {
             others(&scene, parameter).iter().find_map(|e| claim(e, &|c| c == Class::Retrace))
