@@ -67,7 +67,7 @@ pub fn file(source: &Path, target: &Path) -> Result<Imported, ImportError> {
     from(source, target, &|path| std::fs::read(path))
 }
 
-/// [`file`] with files from elsewhere.
+/// [`file()`] with files from elsewhere.
 fn from(source: &Path, target: &Path, fetch: Fetch<'_>) -> Result<Imported, ImportError> {
     let mut job = Job::new(source, target, fetch);
     let ending = source.extension().unwrap_or_default().to_string_lossy().to_lowercase();
