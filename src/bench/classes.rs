@@ -14,7 +14,7 @@ use crate::session::trace::TraceError;
 use crate::session::{Class, Session};
 
 /// Seconds after which no further edit that regrows is measured.
-const REGROW_SECONDS: f64 = 30.0;
+const REGROW_SECONDS: f64 = 20.0;
 
 /// Times that edits are held against.
 pub(super) struct Yardstick {

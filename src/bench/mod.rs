@@ -21,9 +21,9 @@ use crate::session::trace::{TraceError, TraceReport, trace_only};
 use crate::session::{Class, Options, Session};
 
 /// Seconds for all repeated traces, about: there are 1 … 5.
-const TRACE_SECONDS: f64 = 60.0;
+const TRACE_SECONDS: f64 = 30.0;
 /// Seconds after which no further edit is measured, of each kind.
-const EDIT_SECONDS: f64 = 20.0;
+const EDIT_SECONDS: f64 = 10.0;
 
 /// Traces `scene` and measures everything that `rayforest bench` reports, as one JSON object.
 ///

@@ -15,7 +15,7 @@ use crate::session::trace::{TraceError, TraceReport, trace_only};
 use crate::session::{Options, Session};
 
 /// Seconds that a row may take, about: pictures are made smaller, or have fewer tiles, until they fit.
-const ROW_SECONDS: f64 = 25.0;
+const ROW_SECONDS: f64 = 15.0;
 /// Samples of the picture that errors are held against.
 const REFERENCE: u32 = 1024;
 /// Numbers of uniform samples, and with how many at most adaptive sampling is to reach their error.
