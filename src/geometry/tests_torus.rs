@@ -1,7 +1,6 @@
 //! The torus against closed forms, and its way of solving against others.
 
 use glam::DVec3;
-use rustix::time::{ClockId, clock_gettime};
 
 use super::primitive::Start;
 use super::testing::Random;
@@ -277,49 +276,14 @@ fn ferrari_polished(minor: f64, o: DVec3, d: DVec3) -> Vec<f64> {
     ferrari(coefficients).into_iter().map(polish).collect()
 }
 
-/// Nanoseconds of this thread per ray.
-fn nanoseconds_per_ray(rays: &[(DVec3, DVec3)], solve: impl Fn(DVec3, DVec3) -> usize) -> f64 {
-    let now = || {
-        let time = clock_gettime(ClockId::ThreadCPUTime);
-        time.tv_sec as f64 * 1e9 + time.tv_nsec as f64
-    };
-    let begin = now();
-    let met: usize = rays.iter().map(|(o, d)| solve(*o, *d)).sum();
-    assert!(met > 0);
-    (now() - begin) / rays.len() as f64
-}
-
-/// Time, wrong counts and worst error of every solver on every category. What the others find in the
-/// lens where a tube without a hole overlaps itself counts as wrong.
+/// Why the crossings are sought between the turning points of the quartic: its closed solution loses
+/// some or finds too many, polished or not. What it finds in the lens where a tube without a hole
+/// overlaps itself is left out: there it answers another question.
 #[test]
-#[ignore = "a chart: it measures time"]
-fn torus_solvers_side_by_side() {
-    let solvers: [(&str, Solver); 3] = [
-        ("between turning points", ours),
-        ("Ferrari, shifted", ferrari_shifted),
-        ("Ferrari, shifted, polished", ferrari_polished),
-    ];
-    let mut random = Random(1);
-    let mut rays = |width: f64| -> Vec<(DVec3, DVec3)> {
-        let mut ray = || {
-            let o = random.direction() * 5.0;
-            (o, (random.in_cube() * width - o).normalize())
-        };
-        (0..200_000).map(|_| ray()).collect()
-    };
-    let (close, wide) = (rays(1.3), rays(5.0));
-    let torus = Torus { major: 1.0, minor: 0.3 };
-    for (what, rays) in [("close to it", &close), ("also far past it", &wide)] {
-        let bare = |o, d| torus.spans(o, d, Start::Elsewhere).ends().len();
-        let nanoseconds = nanoseconds_per_ray(rays, bare);
-        println!("{what}: {nanoseconds:.0} ns per ray, without a list");
-    }
-    for (name, solver) in solvers {
-        let nanoseconds = nanoseconds_per_ray(&close, |o, d| solver(0.3, o, d).len());
-        println!("{name}: {nanoseconds:.0} ns per ray");
-        for (category, cases) in categories() {
-            let (wrong, worst) = judge(solver, &cases);
-            println!("  {category}: {wrong} of {} wrong, {worst:.2} × tolerance", cases.len());
-        }
-    }
+fn torus_closed_solution_loses_crossings() {
+    let categories = categories();
+    let fair = || categories.iter().filter(|(name, _)| name != "no hole");
+    let wrong = |solver: Solver| fair().map(|(_, cases)| judge(solver, cases).0).sum::<usize>();
+    assert_eq!(wrong(ours), 0);
+    assert!(wrong(ferrari_shifted) > 0 && wrong(ferrari_polished) > 0);
 }

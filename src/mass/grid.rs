@@ -31,7 +31,8 @@ pub(super) struct Found {
 /// What a thread needs.
 struct Scratch {
     stack: Stack,
-    hits: Vec<Hit>,
+    /// `t` and primitive of each.
+    hits: Vec<(f64, u32)>,
 }
 
 impl Grid<'_> {
@@ -124,17 +125,18 @@ impl Grid<'_> {
         // Solids may overlap, as the balls of a flake do: the ray is inside while it has entered more
         // often than it has left.
         let (mut depth, mut entered) = (0, 0.0);
-        for hit in &*hits {
-            let normal = self.geometry.interaction(stack, &ray, *hit).geometric_normal;
+        for &(t, primitive) in &*hits {
+            let hit = Hit { t, primitive };
+            let normal = self.geometry.interaction(stack, &ray, hit).geometric_normal;
             if normal[axis] < 0.0 {
                 if depth == 0 {
-                    entered = hit.t;
+                    entered = t;
                 }
                 depth += 1;
             } else {
                 depth -= 1;
                 if depth == 0 {
-                    let part = of_interval(axis, across, start + entered, start + hit.t);
+                    let part = of_interval(axis, across, start + entered, start + t);
                     sum.iter_mut().zip(part).for_each(|(sum, x)| *sum += x);
                 }
             }
