@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::boxes::{Boxes, WIDTH};
 use super::leaf::Leaf;
 use super::{Child, Composite, Gate, NO_PARENT};
 use crate::geometry::placement::Placed;
@@ -133,7 +134,10 @@ impl Composite {
         finish(&mut gates, &leaves);
         let size = leaves.iter().map(Leaf::size).fold(0.0, f64::max);
         let count = next - first;
-        Ok(Composite { gates, leaves, solid: solid as u32, first, count, size })
+        let gate_counts = gates.iter().map(|gate| gate.start).collect();
+        let leaf_counts = leaves.iter().map(|leaf| i32::from(leaf.complement)).collect();
+        let first_counts = [gate_counts, leaf_counts];
+        Ok(Composite { gates, leaves, solid: solid as u32, first, count, size, first_counts })
     }
 }
 
@@ -189,7 +193,7 @@ impl Builder<'_> {
 impl Gate {
     fn new(all: bool, parent: u32) -> Gate {
         let (bounds, changes) = (EVERYWHERE, EVERYWHERE);
-        Gate { all, parent, children: Vec::new(), start: 0, bounds, changes }
+        Gate { all, parent, children: Vec::new(), boxes: Vec::new(), start: 0, bounds, changes }
     }
 }
 
@@ -197,9 +201,6 @@ const EVERYWHERE: [DVec3; 2] = [DVec3::NEG_INFINITY, DVec3::INFINITY];
 
 /// A box that holds nothing.
 const NOWHERE: [DVec3; 2] = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-
-/// Leaves of a gate that have no gate in between.
-const MOST_LEAVES: usize = 4;
 
 /// Gathers the many leaves of a gate that a line mostly misses, what is cut out or joined, in gates of
 /// their own by place, which change nothing but that they are left out together.
@@ -211,7 +212,7 @@ fn cluster(gates: &mut Vec<Gate>, leaves: &mut [Leaf], index: usize) {
         Child::Gate(_) => false,
     };
     let (mut idle, mut others): (Vec<Child>, Vec<Child>) = children.into_iter().partition(idle);
-    if idle.len() <= MOST_LEAVES {
+    if others.len() + idle.len() <= WIDTH {
         others.append(&mut idle);
     } else {
         others.extend(clustered(gates, leaves, index as u32, idle));
@@ -219,24 +220,52 @@ fn cluster(gates: &mut Vec<Gate>, leaves: &mut [Leaf], index: usize) {
     gates[index].children = others;
 }
 
-/// Gates below `parent` of a few leaves each.
+/// Gates below `parent`, of a few leaves or gates each: at most as many as are tested together.
 fn clustered(
     gates: &mut Vec<Gate>,
     leaves: &mut [Leaf],
     parent: u32,
     mut children: Vec<Child>,
 ) -> Vec<Child> {
-    let gate = gates.len() as u32;
-    if children.len() <= MOST_LEAVES {
-        for child in &children {
-            if let Child::Leaf(leaf) = child {
-                leaves[*leaf as usize].gate = gate;
-            }
-        }
+    let parts = sorted_parts(leaves, &mut children);
+    let mut within = Vec::with_capacity(parts.len());
+    for part in parts {
+        let gate = gates.len() as u32;
         let new = Gate::new(gates[parent as usize].all, parent);
-        gates.push(Gate { children, ..new });
-        return vec![Child::Gate(gate)];
+        gates.push(new);
+        let children = if part.len() > WIDTH {
+            clustered(gates, leaves, gate, part)
+        } else {
+            for child in &part {
+                if let Child::Leaf(leaf) = child {
+                    leaves[*leaf as usize].gate = gate;
+                }
+            }
+            part
+        };
+        gates[gate as usize].children = children;
+        within.push(Child::Gate(gate));
     }
+    within
+}
+
+/// At most eight parts of some leaves by place, cut in halves across the longest way.
+fn sorted_parts(leaves: &[Leaf], children: &mut Vec<Child>) -> Vec<Vec<Child>> {
+    let mut parts = vec![std::mem::take(children)];
+    while parts.len() < WIDTH {
+        let most = (0..parts.len()).max_by_key(|&part| parts[part].len()).unwrap_or(0);
+        if parts[most].len() <= WIDTH / 2 {
+            break;
+        }
+        let mut lower = parts.swap_remove(most);
+        let upper = halve(leaves, &mut lower);
+        parts.extend([lower, upper]);
+    }
+    parts
+}
+
+/// Takes the upper half of some leaves along the axis in which their middles differ most.
+fn halve(leaves: &[Leaf], children: &mut Vec<Child>) -> Vec<Child> {
     let middle = |child: &Child| match child {
         // What has no end comes last.
         Child::Leaf(leaf) => {
@@ -251,13 +280,7 @@ fn clustered(
     let extent = hi - lo;
     let axis = (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b])).unwrap_or(0);
     children.sort_by(|a, b| middle(a)[axis].total_cmp(&middle(b)[axis]));
-    let upper = children.split_off(children.len() / 2);
-    let new = Gate::new(gates[parent as usize].all, parent);
-    gates.push(new);
-    let mut halves = clustered(gates, leaves, gate, children);
-    halves.extend(clustered(gates, leaves, gate, upper));
-    gates[gate as usize].children = halves;
-    vec![Child::Gate(gate)]
+    children.split_off(children.len() / 2)
 }
 
 /// Orders children, and finds out what is there at the beginning and where, children first.
@@ -286,8 +309,12 @@ fn finish(gates: &mut [Gate], leaves: &[Leaf]) {
         let mut order: Vec<usize> = (0..known.len()).collect();
         let is_gate = |child: &Child| matches!(child, Child::Gate(_));
         order.sort_by_key(|&k| (known[k].0, is_gate(&gates[i].children[k])));
+        // One that is never there makes "all of" nothing, one that always is "any of" all.
+        let of = |&k: &usize| (known[k].2, known[k].0 != all);
+        let boxes = Boxes::around(&order.iter().map(of).collect::<Vec<_>>());
         let children = order.into_iter().map(|k| gates[i].children[k]).collect();
-        let gate = Gate { children, start, bounds, changes, ..Gate::new(all, gates[i].parent) };
+        let new = Gate::new(all, gates[i].parent);
+        let gate = Gate { children, boxes, start, bounds, changes, ..new };
         // What is not there at first is there only in its bounds.
         let changes = if gate.is_there_first() { changes } else { within(changes, bounds) };
         gates[i] = Gate { changes, ..gate };

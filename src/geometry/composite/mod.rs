@@ -5,6 +5,7 @@
 //! that says so, and the normal of a leaf whose complement is meant is turned once and for all.
 //! Crossings that f64 cannot tell apart are one (see [`walk`]).
 
+mod boxes;
 mod build;
 mod leaf;
 #[cfg(test)]
@@ -15,6 +16,7 @@ mod walk;
 
 use glam::DVec3;
 
+use boxes::Boxes;
 pub(super) use build::{Chain, Parts};
 pub(super) use leaf::Leaf;
 pub(super) use walk::Lists;
@@ -34,6 +36,9 @@ pub(super) struct Composite {
     count: u32,
     /// No coordinate of the leaves' surfaces is larger, but those of planes.
     size: f64,
+    /// At the beginning of every line: per gate how many of its children are there, per leaf how often
+    /// it is.
+    first_counts: [Vec<i32>; 2],
 }
 
 /// All of some sets, or any of them.
@@ -45,6 +50,8 @@ struct Gate {
     parent: u32,
     /// Solids before complements: what the line misses is found early.
     children: Vec<Child>,
+    /// Around each child where it is not what it is at first.
+    boxes: Vec<Boxes>,
     /// How many of its children are there at the beginning of every line, unless crossings at −∞ say
     /// otherwise.
     start: i32,
@@ -82,10 +89,20 @@ impl Composite {
         self.gates[0].bounds
     }
 
+    /// Whether a child of a gate is there at the beginning of every line.
+    fn is_there_first(&self, child: &Child) -> bool {
+        match child {
+            Child::Leaf(leaf) => self.leaves[*leaf as usize].complement,
+            Child::Gate(gate) => self.gates[*gate as usize].is_there_first(),
+        }
+    }
+
     /// Memory held, in bytes.
     pub(super) fn bytes(&self) -> usize {
-        let gates = self.gates.iter().map(|gate| size_of_val(&*gate.children)).sum::<usize>();
+        let gate = |gate: &Gate| size_of_val(&*gate.children) + size_of_val(&*gate.boxes);
+        let gates = self.gates.iter().map(gate).sum::<usize>();
+        let counts = self.first_counts.iter().map(|counts| size_of_val(&**counts)).sum::<usize>();
         let leaves = self.leaves.iter().map(Leaf::bytes).sum::<usize>();
-        size_of_val(&*self.gates) + gates + leaves
+        size_of_val(&*self.gates) + gates + leaves + counts
     }
 }

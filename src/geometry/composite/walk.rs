@@ -9,8 +9,8 @@
 use std::cmp::Ordering;
 
 use fearless_simd::{Level, dispatch};
-use glam::DVec3;
 
+use super::boxes::{Line, WIDTH};
 use super::leaf::{Leaf, Part};
 use super::{Child, Composite, NO_PARENT};
 use crate::geometry::hierarchy::STACK;
@@ -54,9 +54,9 @@ struct Event {
 
 /// A part of a line that matters.
 #[derive(Clone, Copy, Debug)]
-struct Clip {
-    from: f64,
-    to: f64,
+pub(super) struct Clip {
+    pub(super) from: f64,
+    pub(super) to: f64,
 }
 
 impl Clip {
@@ -80,8 +80,7 @@ struct Sight<'a> {
     level: Level,
     entries: Option<&'a mut [u64; STACK]>,
     lists: &'a mut Lists,
-    reciprocal: DVec3,
-    pad: f64,
+    line: Line,
     /// No coordinate that is computed with is larger, but for `t`.
     size: f64,
 }
@@ -102,8 +101,7 @@ impl Composite {
             level,
             entries: entries.as_deref_mut(),
             lists,
-            reciprocal: ray.direction.recip(),
-            pad: ray.origin.abs().element_sum() * AWAY,
+            line: Line::new(level, ray, ray.origin.abs().element_sum() * AWAY),
             size: self.size + ray.origin.abs().max_element(),
         };
         if sight.gate(0, Clip { from: 0.0, to: query.limit() }).is_some() {
@@ -119,35 +117,40 @@ impl Sight<'_> {
     fn gate(&mut self, index: u32, mut clip: Clip) -> Option<Clip> {
         let whole = self.whole;
         let gate = &whole.gates[index as usize];
-        self.slab(gate.changes, clip)?;
         let begin = self.lists.events.len();
         let mut reach = if gate.all { clip } else { Clip::NOTHING };
         let mut changes = false;
-        for child in &gate.children {
-            let (there_first, changing) = match child {
-                Child::Leaf(leaf) => {
-                    let leaf = &whole.leaves[*leaf as usize];
-                    (leaf.complement, self.leaf(leaf, clip))
-                }
-                Child::Gate(child) => {
-                    let there = whole.gates[*child as usize].is_there_first();
-                    (there, self.gate(*child, clip))
-                }
+        for (eight, boxes) in gate.children.chunks(WIDTH).zip(&gate.boxes) {
+            let Some(within) = boxes.meet(&self.line, clip) else {
+                self.lists.events.truncate(begin);
+                return None;
             };
-            match changing {
-                // One that is never there makes "all of" nothing, one that always is "any of" all.
-                None if there_first != gate.all => {
-                    self.lists.events.truncate(begin);
-                    return None;
-                }
-                None => {}
-                Some(part) => {
-                    changes = true;
-                    if gate.all && !there_first {
-                        clip = clip.within(part);
-                        reach = reach.within(part);
-                    } else if !gate.all {
-                        reach = reach.around(part);
+            let mut met = within.met;
+            while met != 0 {
+                let lane = met.trailing_zeros() as usize & (WIDTH - 1);
+                met &= met - 1;
+                let child = &eight[lane];
+                let there_first = whole.is_there_first(child);
+                let changing = match child {
+                    _ if !within.is_within(lane, clip) => None,
+                    Child::Leaf(leaf) => self.leaf(&whole.leaves[*leaf as usize]),
+                    Child::Gate(gate) => self.gate(*gate, clip),
+                };
+                match changing {
+                    // One that is never there makes "all of" nothing, one that always is "any of" all.
+                    None if there_first != gate.all => {
+                        self.lists.events.truncate(begin);
+                        return None;
+                    }
+                    None => {}
+                    Some(part) => {
+                        changes = true;
+                        if gate.all && !there_first {
+                            clip = clip.within(part);
+                            reach = reach.within(part);
+                        } else if !gate.all {
+                            reach = reach.around(part);
+                        }
                     }
                 }
             }
@@ -155,29 +158,8 @@ impl Sight<'_> {
         changes.then_some(reach)
     }
 
-    /// The part of the line in a box, if any of it matters.
-    #[inline(always)]
-    fn slab(&self, [lo, hi]: [DVec3; 2], clip: Clip) -> Option<Clip> {
-        let (o, d, r) = (self.ray.origin, self.ray.direction, self.reciprocal);
-        let mut clip = clip;
-        for axis in 0..3 {
-            let (o, lo, hi) = (o[axis], lo[axis] - self.pad, hi[axis] + self.pad);
-            if d[axis].abs() < 1e-200 {
-                if !(lo <= o && o <= hi) {
-                    return None;
-                }
-                continue;
-            }
-            let (first, last) = if d[axis] > 0.0 { (lo, hi) } else { (hi, lo) };
-            clip.from = clip.from.max((first - o) * r[axis]);
-            clip.to = clip.to.min((last - o) * r[axis]);
-        }
-        (clip.from <= clip.to).then_some(clip)
-    }
-
-    /// The same as [`Sight::gate`] of a leaf.
-    fn leaf(&mut self, leaf: &Leaf, clip: Clip) -> Option<Clip> {
-        self.slab(leaf.bounds, clip)?;
+    /// The same as [`Sight::gate`] of a leaf whose box the line meets.
+    fn leaf(&mut self, leaf: &Leaf) -> Option<Clip> {
         let start = self.departure.start_in(leaf.first, leaf.count(), leaf.complement);
         let (origin, direction) = match leaf.placed(self.time) {
             None => (self.ray.origin, self.ray.direction),
@@ -295,10 +277,11 @@ impl Sight<'_> {
     fn offer<Q: Query>(&mut self, query: &mut Q) {
         let whole = self.whole;
         let mut events = std::mem::take(&mut self.lists.events);
+        let [gates, leaves] = &whole.first_counts;
         self.lists.gates.clear();
-        self.lists.gates.extend(whole.gates.iter().map(|gate| gate.start));
+        self.lists.gates.extend_from_slice(gates);
         self.lists.leaves.clear();
-        self.lists.leaves.extend(whole.leaves.iter().map(|leaf| i32::from(leaf.complement)));
+        self.lists.leaves.extend_from_slice(leaves);
         let (mut there, mut from) = (whole.gates[0].is_there_first(), 0);
         while let Some(first) = events.get(from) {
             if first.t > query.limit() {
