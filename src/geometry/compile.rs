@@ -111,8 +111,6 @@ pub(super) struct Primitives {
     pub(super) solid_of: Vec<u32>,
     /// The number of the first primitive: another than 0 for those of a solid that moves.
     first: u32,
-    /// Whether any primitive is decided by its corners as the ray sees them.
-    pub(super) sheared: bool,
 }
 
 impl Primitives {
@@ -134,7 +132,7 @@ impl Primitives {
                 all.add_composite(scene, made, progress)?;
             }
         }
-        Ok(all.finished())
+        Ok(all)
     }
 
     /// Expands one solid, whose primitives are numbered from `first` on.
@@ -146,13 +144,7 @@ impl Primitives {
     ) -> Result<Primitives, Cancelled> {
         let mut all = Primitives { first, ..Primitives::default() };
         all.add(solid, placed, progress)?;
-        Ok(all.finished())
-    }
-
-    fn finished(mut self) -> Primitives {
-        let forms = self.shapes.iter().any(|shape| shape.form.is_sheared());
-        self.sheared = forms || !self.triangles.is_empty();
-        self
+        Ok(all)
     }
 
     /// How many primitives there are.

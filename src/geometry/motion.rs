@@ -145,7 +145,7 @@ impl Moving {
         let from = (walk.leaving, pose.slack(walk.ray));
         // Nothing in it moves.
         let resting = RefCell::default();
-        let within = Walk::new(&self.rest.primitives, &ray, from, &resting);
+        let within = Walk::new(&ray, from, &resting);
         dispatch!(level, simd => self.rest.descend(simd, entries, &within, query));
     }
 

@@ -139,21 +139,9 @@ impl Plane {
 }
 
 impl Form {
-    /// Whether its roots are decided by its corners as the ray sees them.
-    pub(super) fn is_sheared(&self) -> bool {
-        match self {
-            Form::Polygon(..) => true,
-            Form::Cuboid(..) | Form::PlacedCuboid(..) | Form::Ellipsoid(..) | Form::Closed(_) => {
-                false
-            }
-            // What meets rays itself shears its own.
-            Form::Moving(_) | Form::Composite(_) => false,
-        }
-    }
-
     /// Entry and exit, or the one crossing of a surface.
     #[inline(always)]
-    pub(super) fn roots(&self, ray: &Ray, shear: &Shear, start: Start) -> Roots {
+    pub(super) fn roots(&self, ray: &Ray, start: Start) -> Roots {
         if start == Start::Outside {
             return Roots::NONE;
         }
@@ -168,7 +156,7 @@ impl Form {
                 sphere_roots(origin - center, d, d.length_squared(), *radius, start)
             }
             Form::Polygon(corners, normal) => match start {
-                Start::Elsewhere => polygon_root(ray, shear, corners, *normal),
+                Start::Elsewhere => polygon_root(ray, corners, *normal),
                 Start::Outside | Start::Inside => Roots::NONE,
             },
             // They meet rays themselves.
@@ -178,8 +166,8 @@ impl Form {
 }
 
 #[inline(always)]
-fn polygon_root(ray: &Ray, shear: &Shear, corners: &[Corner], normal: DVec3) -> Roots {
-    if !shear.polygon(corners) {
+fn polygon_root(ray: &Ray, corners: &[Corner], normal: DVec3) -> Roots {
+    if !Shear::new(ray).polygon(corners) {
         return Roots::NONE;
     }
     let t = normal.dot(point(&corners[0]) - ray.origin) / normal.dot(ray.direction);

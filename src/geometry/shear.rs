@@ -54,10 +54,6 @@ pub(super) struct Crossing {
 }
 
 impl Shear {
-    /// Where nothing has corners.
-    pub(super) const UNUSED: Shear =
-        Shear { axis: [0; 3], origin: [0.0; 3], slope: [0.0; 2], per_depth: 0.0 };
-
     /// The direction may have any length but zero.
     #[inline(always)]
     pub(super) fn new(ray: &Ray) -> Shear {

@@ -6,7 +6,6 @@ use fearless_simd::{Level, Simd, f32x8, prelude::*};
 
 use glam::DVec3;
 
-use super::compile::Primitives;
 use super::hierarchy::{Child, Frame, Node, STACK, Stack, Target};
 use super::motion::Moment;
 use super::packet::{ShapePacket, SpherePacket, TrianglePacket, WIDTH};
@@ -47,8 +46,6 @@ pub(super) struct Beam<S: Simd> {
 #[derive(Clone, Copy)]
 pub(super) struct Walk<'a> {
     pub(super) ray: &'a Ray,
-    /// Of no use where nothing has corners.
-    shear: Shear,
     pub(super) leaving: Departure,
     /// By how much the origin may be off beyond its own rounding, world units.
     slack: f64,
@@ -57,16 +54,14 @@ pub(super) struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    /// Among some primitives.
+    /// Of a ray that may leave a surface.
     #[inline(always)]
     pub(super) fn new(
-        among: &Primitives,
         ray: &'a Ray,
         (leaving, slack): (Departure, f64),
         moment: &'a RefCell<Moment>,
     ) -> Walk<'a> {
-        let shear = if among.sheared { Shear::new(ray) } else { Shear::UNUSED };
-        Walk { ray, shear, leaving, slack, moment }
+        Walk { ray, leaving, slack, moment }
     }
 }
 
@@ -147,7 +142,7 @@ impl Geometry {
         query: &mut Q,
     ) {
         let Stack { entries, moment } = stack;
-        let walk = Walk::new(&self.primitives, ray, (self.departure(leaving), 0.0), moment);
+        let walk = Walk::new(ray, (self.departure(leaving), 0.0), moment);
         for plane in &self.primitives.planes {
             let t = plane.root(ray, walk.leaving.start_of(plane.primitive));
             // Of the nearest crossing an infinite one is none.
@@ -238,10 +233,14 @@ impl Geometry {
             Target::Triangles => {
                 let packet: &TrianglePacket = &packets.triangles[index];
                 let mut mask = packet.candidates(simd, beam, limits);
+                if mask == 0 {
+                    return;
+                }
+                let shear = Shear::new(walk.ray);
                 while mask != 0 && !query.is_done() {
                     let lane = mask.trailing_zeros() as usize & (WIDTH - 1);
                     mask &= mask - 1;
-                    self.triangle(packet.items[lane] as usize, walk, query);
+                    self.triangle(packet.items[lane] as usize, &shear, walk, query);
                 }
             }
             Target::Shapes => {
@@ -261,10 +260,10 @@ impl Geometry {
     }
 
     #[inline(always)]
-    fn triangle<Q: Query>(&self, item: usize, walk: &Walk<'_>, query: &mut Q) {
+    fn triangle<Q: Query>(&self, item: usize, shear: &Shear, walk: &Walk<'_>, query: &mut Q) {
         let all = &self.primitives;
         let triangle = &all.triangles[item];
-        let Some(crossing) = walk.shear.triangle(all.triangle_corners(triangle)) else { return };
+        let Some(crossing) = shear.triangle(all.triangle_corners(triangle)) else { return };
         let (t, primitive) = (crossing.t, triangle.primitive);
         if !(t > 0.0 && t <= query.limit()) {
             return;
@@ -300,7 +299,7 @@ impl Geometry {
             query.lend(|query| closed.meet(walk.ray, start, shape.primitive, query));
             return;
         }
-        offer_roots(shape.form.roots(walk.ray, &walk.shear, start), shape.primitive, query);
+        offer_roots(shape.form.roots(walk.ray, start), shape.primitive, query);
     }
 
     #[inline(always)]
@@ -327,7 +326,7 @@ impl Geometry {
     ) {
         let all = &self.primitives;
         let moment = RefCell::new(Moment::new(all, time));
-        let walk = Walk::new(all, ray, (self.departure(leaving), 0.0), &moment);
+        let walk = Walk::new(ray, (self.departure(leaving), 0.0), &moment);
         for plane in &all.planes {
             let t = plane.root(ray, walk.leaving.start_of(plane.primitive));
             if t > 0.0 && t < f64::INFINITY {
@@ -338,7 +337,8 @@ impl Geometry {
             all.composites[index as usize].meet(Level::new(), &walk, query);
         }
         (0..all.spheres.len()).for_each(|i| self.sphere(i, &walk, query));
-        (0..all.triangles.len()).for_each(|i| self.triangle(i, &walk, query));
+        let shear = Shear::new(ray);
+        (0..all.triangles.len()).for_each(|i| self.triangle(i, &shear, &walk, query));
         (0..all.shapes.len()).for_each(|i| self.shape(Level::new(), i, &walk, query));
     }
 }

@@ -203,7 +203,7 @@ impl Sight<'_> {
         let entries = self.entries.as_deref_mut()?;
         let nobody = Departure::NONE;
         let resting = std::cell::RefCell::default();
-        let walk = Walk::new(&leaf.rest.primitives, &moved, (nobody, 0.0), &resting);
+        let walk = Walk::new(&moved, (nobody, 0.0), &resting);
         let level = self.level;
         let mut all = Gather { hits, t_max: f64::INFINITY };
         dispatch!(level, simd => leaf.rest.descend(simd, entries, &walk, &mut all));
