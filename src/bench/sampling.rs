@@ -9,6 +9,7 @@ use crate::film::layout::{Layout, TILE_BLOCKS};
 use crate::film::pixels::PixelSet;
 use crate::math::exposure_factor;
 use crate::progress::Progress;
+use crate::scene::refine::Refine;
 use crate::scene::{PILOTS, Scene, Trace};
 use crate::session::still::Still;
 use crate::session::trace::{TraceError, TraceReport, trace_only};
@@ -19,11 +20,16 @@ const ROW_SECONDS: f64 = 15.0;
 /// Samples of the picture that errors are held against.
 const REFERENCE: u32 = 1024;
 /// Numbers of uniform samples, and with how many at most adaptive sampling is to reach their error.
-const UNIFORM: [(u32, [u32; 3]); 2] = [(16, [16, 24, 32]), (64, [64, 96, 128])];
-/// Adaptive steps that are tried.
-const STEPS: [f32; 3] = [0.4, 0.2, 0.1];
+const UNIFORM: [(u32, [u32; 3]); 2] = [(16, [18, 24, 32]), (64, [72, 96, 128])];
+/// Those that are tried.
+const WAYS: [Way; 3] = [(Refine::Trees, 0.1), (Refine::Contrast, 0.1), (Refine::Contrast, 0.06)];
+/// Every pixel has all samples.
+const EVERY: Way = (Refine::Trees, 0.0);
 /// Rays of the area light.
 const LIGHT_SAMPLES: [u32; 2] = [1, 64];
+
+/// What adaptive sampling compares, and its step.
+type Way = (Refine, f32);
 
 /// A scene and what tracing it takes.
 struct Bench<'a> {
@@ -50,7 +56,7 @@ impl Bench<'_> {
         let mut scene = self.session.scene().clone();
         scene.picture.size = size;
         let times = |samples| -> Result<(Spread, f64), TraceError> {
-            let scene = Scene { trace: trace_of(&scene, samples, 0.0), ..scene.clone() };
+            let scene = Scene { trace: trace_of(&scene, samples, EVERY), ..scene.clone() };
             // Beside the trees of the session that is measured; these need none.
             let options = Options { memory: self.options().memory / 4, ..self.options() };
             let mut session = Session::open(scene, options, &Progress::default())?;
@@ -69,20 +75,20 @@ impl Bench<'_> {
     /// Rays and errors of adaptive sampling against uniform sampling of some of the picture's tiles.
     fn adaptive(&self) -> Result<Value, TraceError> {
         let most: u32 = UNIFORM.iter().flat_map(|(_, most)| most).sum();
-        let samples = f64::from(REFERENCE + most * STEPS.len() as u32);
+        let samples = f64::from(REFERENCE + most * WAYS.len() as u32);
         let tiles = self.tiles_for(samples);
         let around = self.around(&tiles)?;
-        let (truth, _) = self.light(&tiles, (REFERENCE, 0.0))?;
+        let (truth, _) = self.light(&tiles, REFERENCE, EVERY)?;
         let mut rows = Vec::new();
         for (uniform, most) in UNIFORM {
-            let (light, rays) = self.light(&tiles, (uniform, 0.0))?;
+            let (light, rays) = self.light(&tiles, uniform, EVERY)?;
             let error = self.error(&tiles, &light, &truth);
             let mut tried = Vec::new();
             for samples in most {
-                for step in STEPS {
-                    let (light, adaptive) = self.light(&tiles, (samples, step))?;
+                for way in WAYS {
+                    let (light, adaptive) = self.light(&tiles, samples, way)?;
                     let share = (adaptive as f64 - around) / rays as f64;
-                    tried.push((samples, step, share, self.error(&tiles, &light, &truth)));
+                    tried.push((samples, way, share, self.error(&tiles, &light, &truth)));
                 }
             }
             let reaching = tried.iter().filter(|(.., reached)| reached.codes <= error.codes);
@@ -162,7 +168,7 @@ impl Bench<'_> {
         let layout = Layout::new(self.session.scene().picture.size);
         let own = PixelSet::of_tiles(layout, tiles.iter().copied());
         let [all, own_count] = [own.widened().places().count(), own.places().count()];
-        let rays = self.light(tiles, (PILOTS, 0.0))?.1;
+        let rays = self.light(tiles, PILOTS, EVERY)?.1;
         Ok(rays as f64 * (all as f64 / own_count as f64 - 1.0))
     }
 
@@ -170,11 +176,12 @@ impl Bench<'_> {
     fn light(
         &self,
         tiles: &[usize],
-        (samples, step): (u32, f32),
+        samples: u32,
+        way: Way,
     ) -> Result<(Vec<FilmBlock>, u64), TraceError> {
         let scene = self.session.scene();
         let progress = Progress::default();
-        let wanted = Scene { trace: trace_of(scene, samples, step), ..scene.clone() };
+        let wanted = Scene { trace: trace_of(scene, samples, way), ..scene.clone() };
         let (light, report) = self.still(&wanted).light(tiles, &progress)?;
         Ok((light, report.rays.total()))
     }
@@ -188,14 +195,14 @@ impl Bench<'_> {
     }
 }
 
-/// The scene's way to trace, with so many samples and this adaptive step.
-fn trace_of(scene: &Scene, samples: u32, adaptive: f32) -> Trace {
-    Trace { samples, adaptive, ..scene.trace.clone() }
+/// The scene's way to trace, with so many samples, adaptive by `refine` with a step.
+fn trace_of(scene: &Scene, samples: u32, (refine, adaptive): Way) -> Trace {
+    Trace { samples, adaptive, refine, ..scene.trace.clone() }
 }
 
-fn row_of(&(samples, step, share, error): &(u32, f32, f64, Deviation)) -> Value {
+fn row_of(&(samples, (refine, step), share, error): &(u32, Way, f64, Deviation)) -> Value {
     json!({
-        "samples": samples, "step": step, "share_of_rays": share,
+        "samples": samples, "refine": Refine::NAMES[refine as usize], "step": step, "share_of_rays": share,
         "error_codes": error.codes, "error_linear": error.linear,
     })
 }
@@ -215,9 +222,10 @@ pub(super) fn summary(rows: &Value) -> String {
         text += &match number(row, "/best/share_of_rays") {
             Some(share) => format!(
                 "\n  the error of {} uniform samples with {share:.2} of their rays: at most {} \
-                 samples, step {:.2} ({} tiles)",
+                 samples, {} with step {:.2} ({} tiles)",
                 row["uniform"],
                 row["best"]["samples"],
+                row["best"]["refine"].as_str().unwrap_or("?"),
                 of(row, "/best/step"),
                 rows["adaptive"]["tiles"],
             ),
