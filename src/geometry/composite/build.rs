@@ -212,7 +212,7 @@ fn cluster(gates: &mut Vec<Gate>, leaves: &mut [Leaf], index: usize) {
         Child::Gate(_) => false,
     };
     let (mut idle, mut others): (Vec<Child>, Vec<Child>) = children.into_iter().partition(idle);
-    if others.len() + idle.len() <= WIDTH {
+    if idle.is_empty() || others.len() + idle.len() <= WIDTH {
         others.append(&mut idle);
     } else {
         others.extend(clustered(gates, leaves, index as u32, idle));
