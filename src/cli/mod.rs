@@ -5,6 +5,7 @@ mod chart;
 mod convert;
 mod demo;
 mod inspect;
+mod language;
 mod mass;
 mod render;
 mod tiles;
@@ -54,6 +55,8 @@ enum Mode {
     Convert(convert::Convert),
     /// Measure volume, centre of mass and moments of inertia of solids
     Mass(mass::Weighed),
+    /// Print the reference of scene files: every key with its range, default and cost
+    Language(language::Language),
 }
 
 #[derive(Debug, Args)]
@@ -139,6 +142,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(Mode::Check(check)) => check.run(),
         Some(Mode::Convert(convert)) => convert.run(),
         Some(Mode::Mass(mass)) => mass.run(),
+        Some(Mode::Language(language)) => language.run(),
         Some(Mode::Bench(bench)) => bench.run(),
     }
 }

@@ -47,6 +47,8 @@ pub struct Change {
     pub refold: Vec<u16>,
     /// A factor may have another value, or the rule of liveness another limit.
     pub terms: bool,
+    /// Among them a factor of the seen path, or a limit of liveness: branches may come alive.
+    pub branches: bool,
     /// Only how the sum is shown differs: exposure.
     pub develop: bool,
 }
@@ -183,6 +185,12 @@ impl Change {
         self.terms |= differs;
     }
 
+    /// Notes what makes branches live or die.
+    fn limit(&mut self, differs: bool) {
+        self.term(differs);
+        self.branches |= differs;
+    }
+
     fn picture(&mut self, old: &Picture, new: &Picture) {
         let Picture { size, exposure } = old;
         self.ray(*size != new.size, "picture.size");
@@ -237,7 +245,7 @@ impl Change {
         self.ray(*refine != new.refine && !is_off, "trace.refine");
         self.ray(*samples != new.samples, "trace.samples");
         self.ray(*filter != new.filter, "trace.filter");
-        self.term(*depth != new.depth || *cutoff != new.cutoff);
+        self.limit(*depth != new.depth || *cutoff != new.cutoff);
     }
 
     /// Gives what becomes of its shadow rays.
@@ -300,7 +308,7 @@ impl Change {
         let gloss = *specular != new.specular || *metallic != new.metallic;
         self.term(local || gloss || *emission != new.emission);
         let path = *reflect != new.reflect || *transmit != new.transmit || *filter != new.filter;
-        self.term(path);
+        self.limit(path);
         // `shininess` and `roughness`: only the one that the model heeds shapes its peak. Hall's model
         // has Fresnel's weights, whatever `fresnel` says.
         if *model == new.model && Peak::of(old) != Peak::of(new) {

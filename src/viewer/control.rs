@@ -28,6 +28,8 @@ pub(super) const BADGE: f32 = 108.0;
 pub(super) struct Row<'a> {
     /// The parameter's key.
     pub(super) key: &'static str,
+    /// The table in which it stands; empty for that of a light, a material or a solid.
+    pub(super) table: &'a str,
     /// Its whole path.
     pub(super) path: &'a str,
     /// Names of the materials.
@@ -435,7 +437,7 @@ fn loops_ui(
 /// A tooltip with what the parameter is for, its range, its path and its saved value.
 fn explained(response: Response, row: &Row<'_>, range: Option<Range>) -> Response {
     response.on_hover_ui(|ui| {
-        ui.label(hints::about(row.key));
+        ui.label(hints::about(row.table, row.key));
         if let Some(range) = range {
             ui.weak(format!("range: {range}"));
         }

@@ -4,17 +4,55 @@ use std::ops::RangeInclusive;
 
 use crate::scene::range::Range;
 
-/// What the parameter with this key is for, with its unit.
-pub(super) fn about(key: &str) -> &'static str {
+/// What the parameter with this key is for, with its unit; `table` is the key of the table in which it
+/// stands, empty for that of a light, a material or a solid.
+pub(crate) fn about(table: &str, key: &str) -> &'static str {
+    match (table, key) {
+        ("picture", "size") => "Width and height of the picture in pixels",
+        ("checker", "size") => "Side of a cube, in units of the scene",
+        ("marble", "size") => "Distance of veins, in units of the scene",
+        ("wood", "size") => "Width of a ring, in units of the scene",
+        ("image", "size") => "What the image covers, in units of the scene",
+        ("camera", "height") => "Height of the view of a parallel camera, in units of the scene",
+        ("noise" | "waves" | "image", "height") => "Height of its tops, in units of the scene",
+        ("noise" | "waves", "scale") => "Length of its bumps, in units of the scene",
+        ("trace", "samples") => "Rays from the eye through every pixel: more give smoother edges",
+        ("", "samples") => {
+            "Rays from every point to a light with an area: more give smoother shadows"
+        }
+        ("", "direction") => "The direction in which the light shines",
+        ("marble", "direction") => "Across its veins",
+        ("trace", "filter") => "How a pixel weighs its surroundings",
+        ("", "filter") => "Colour that light takes on at every surface that it passes",
+        ("camera", "up") => "Which way is up in the picture",
+        ("gradient", "up") => "Which way is up in the sky",
+        ("wood" | "waves", "center") => "Where rings begin, in the world",
+        ("rectangle" | "disc", "center") => "Its middle, in the world",
+        ("plane", "normal") => "Points out of the solid; its length does not matter",
+        ("disc", "normal") => "Stands on the disc; its length does not matter",
+        ("cone", "radius") => "Radius at from",
+        ("gradient", "from") => "Where the first colour is",
+        ("gradient", "to") => "Where the second colour is",
+        ("cylinder" | "cone", "from") => "Middle of one end",
+        ("cylinder" | "cone", "to") => "Middle of the other end",
+        ("mesh", "file") => "An OBJ file, sought beside the scene file; it is changed there alone",
+        ("image", "file") => "A PNG, JPEG or HDR file, sought beside the scene file",
+        ("motion", "rotate_degrees") => "How much farther it turns",
+        ("motion", "translate") => "How far it goes from there",
+        ("", "rotate_degrees") => "Turns about x, then y, then z, in degrees",
+        ("", "translate") => "Moves the solid, after scale and turn",
+        ("", "scale") => "Makes the solid larger or smaller, first of all",
+        (_, key) => about_key(key),
+    }
+}
+
+/// The same of what means one thing wherever it stands.
+fn about_key(key: &str) -> &'static str {
     match key {
         "ambient_light" => "Light that reaches every surface from everywhere, times its ambient",
         "eye" => "Where the eye is, in units of the scene",
         "target" => "The point in the middle of the picture",
-        "up" => "Which way is up, in the picture or in the sky",
         "fov_degrees" => "Vertical angle of view, in degrees",
-        "height" => {
-            "Height of the view of a parallel camera; of a bump: of its tops; in units of the scene"
-        }
         "aperture" => {
             "Diameter of the lens, in units of the scene: 0 is a pinhole, which blurs nothing; needs \
              several samples"
@@ -23,16 +61,7 @@ pub(super) fn about(key: &str) -> &'static str {
             "Distance in focus, along the view, in units of the scene; 0: that of the target"
         }
         "shutter" => "Share of the solids' motion that the picture sees; 0: it stands still",
-        "size" => {
-            "Of the picture: width and height in pixels. Of a checker: side of a cube; of marble and \
-             wood: distance of veins, width of rings; in units of the scene. Of an image: what it \
-             covers"
-        }
         "exposure" => "Brightness of the picture in stops: +1 doubles it",
-        "samples" => {
-            "Rays, of a picture from the eye through every pixel, of a light with an area from every \
-             point to it: more give smoother edges"
-        }
         "refine" => {
             "What of neighbouring samples is compared: trees: what rays met, and cosines; contrast: \
              colours, decided again after every edit"
@@ -44,7 +73,6 @@ pub(super) fn about(key: &str) -> &'static str {
         "cutoff" => "Branches that weigh less than this are not followed",
         "color" => "Colour, linear Rec. 709",
         "point" => "Where the light is",
-        "direction" => "The direction in which the light shines; of marble: across its veins",
         "at" => "Where the light is",
         "towards" => "A point that the light shines at",
         "angle_degrees" => "Angle between the middle and the rim of the cone of light, in degrees",
@@ -83,10 +111,6 @@ pub(super) fn about(key: &str) -> &'static str {
         "emission" => "Light that the surface gives off by itself",
         "reflect" => "Share of the mirror image",
         "transmit" => "Share of what is seen through the surface",
-        "filter" => {
-            "Colour that light takes on at every surface that it passes; of the trace: how a pixel \
-             weighs its surroundings"
-        }
         "ior" => "Index of refraction: air 1, water 1.33, glass 1.5, diamond 2.42",
         "material" => "The material of the solid",
         _ => about_form(key),
@@ -96,11 +120,8 @@ pub(super) fn about(key: &str) -> &'static str {
 /// The same of the keys of solids, cameras and lights' places.
 fn about_form(key: &str) -> &'static str {
     match key {
-        "center" => {
-            "Centre, of a solid in its own coordinates; of wood and waves, where rings begin, in the world"
-        }
-        "radius" => "Radius; of a cone at from",
-        "normal" => "Points out of the solid, or stands on the disc; its length does not matter",
+        "center" => "Its centre, of a solid in its own coordinates",
+        "radius" => "Its radius",
         "offset" => "Distance of the plane from the origin along its normal",
         "min" => "Lowest corner",
         "max" => "Highest corner",
@@ -126,15 +147,6 @@ fn about_form(key: &str) -> &'static str {
         "intersection" => "The solids that it is the common part of",
         "difference" => "A solid, and those that are cut out of it",
         "complement" => "The solids that it is everything but",
-        "rotate_degrees" => {
-            "Turns about x, then y, then z, in degrees; of a motion: how much farther it turns"
-        }
-        "translate" => {
-            "Moves the solid, after scale and turn; of a motion: how far it goes from there"
-        }
-        "scale" => {
-            "Makes the solid larger or smaller, first of all; of a bump: its length in units of the scene"
-        }
         key => about_pattern(key),
     }
 }
@@ -144,9 +156,6 @@ fn about_pattern(key: &str) -> &'static str {
     match key {
         "a" => "First colour: of every other square, of stone, of early wood, of the start",
         "b" => "Second colour: of the other squares, of veins, of late wood, of the end",
-        "file" => "The file; a mesh can be changed in the scene file",
-        "from" => "Where it begins: one end of the solid, or the first colour",
-        "to" => "Where it ends: the other end of the solid, or the second colour",
         "axis" => "Along the trunk that the wood is of",
         "turbulence" => "How much veins and rings are folded: 0 is even",
         "tint" => "Colour that the image is multiplied by",
@@ -159,7 +168,7 @@ fn about_pattern(key: &str) -> &'static str {
 }
 
 /// What choosing the thing of this name does.
-pub(super) fn choice(name: &str) -> &'static str {
+pub(crate) fn choice(name: &str) -> &'static str {
     match name {
         "phong" => "Highlights around the mirrored lights: (R·V)^shininess",
         "blinn" => "Highlights that stretch at grazing angles: (N·H)^shininess",
@@ -184,7 +193,7 @@ pub(super) fn choice(name: &str) -> &'static str {
 }
 
 /// What choosing this kind of paint, bump or background does.
-pub(super) fn kind(name: &str) -> &'static str {
+pub(crate) fn kind(name: &str) -> &'static str {
     match name {
         "color" => "One colour everywhere",
         "checker" => "Cubes of two colours",
@@ -236,7 +245,7 @@ pub(super) fn scale(key: &str, range: Range, value: f64) -> Scale {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::fields::{BACKGROUNDS, BUMPS, LENSES, SHAPES, TEXTURES};
+    use crate::scene::fields::{BACKGROUNDS, BUMPS, LENSES, LISTS, SHAPES, TEXTURES};
     use crate::scene::filter::Filter;
     use crate::scene::model::Model;
     use crate::scene::path::parameters;
@@ -270,11 +279,17 @@ mod tests {
             scene.background = Background::named(sky);
             assert!(!kind(sky).is_empty(), "{sky}");
             for parameter in parameters(&scene) {
-                let key = parameter.path.rsplit('.').next().unwrap();
-                assert!(!about(key).is_empty(), "{}", parameter.path);
+                let keys: Vec<&str> = parameter.path.split('.').collect();
+                let table = match keys[..] {
+                    [list, _, _] if LISTS.contains(&list) => "",
+                    [.., table, _] => table,
+                    _ => "",
+                };
+                let key = keys[keys.len() - 1];
+                assert!(!about(table, key).is_empty(), "{}", parameter.path);
             }
         }
-        assert_eq!(about("no such key"), "");
+        assert_eq!(about("", "no such key"), "");
     }
 
     #[test]

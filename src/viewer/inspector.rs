@@ -191,6 +191,7 @@ pub(super) fn inspector_ui(
                 _ => String::new(),
             },
             prefix: String::new(),
+            table: String::new(),
             depth: 0,
             names: &names,
             saved: saved.into_iter().collect(),
@@ -300,6 +301,8 @@ struct Controls<'a, 'u> {
     /// Of the material that is selected.
     name: String,
     prefix: String,
+    /// The innermost table that is no named thing.
+    table: String,
     depth: usize,
     names: &'a Names,
     saved: HashMap<String, String>,
@@ -313,6 +316,7 @@ impl Visit for Controls<'_, '_> {
         let saved = self.saved.get(&path).map(String::as_str);
         let row = Row {
             key,
+            table: &self.table,
             path: &path,
             names: self.names,
             saved: saved.filter(|s| *s != slot.text(self.names)),
@@ -340,9 +344,12 @@ impl Visit for Controls<'_, '_> {
             self.ui.add_space(6.0);
             self.ui.label(RichText::new(key).strong());
         }
+        let inside = if section || self.depth >= 2 { key } else { "" };
+        let around = std::mem::replace(&mut self.table, inside.to_owned());
         self.depth += 1;
         body(self);
         self.depth -= 1;
+        self.table = around;
         self.prefix = outer;
     }
 }

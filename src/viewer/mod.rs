@@ -11,7 +11,7 @@ pub mod dialog;
 mod export;
 mod files;
 mod handles;
-mod hints;
+pub(crate) mod hints;
 mod import;
 mod inspector;
 mod keep;

@@ -197,7 +197,7 @@ fn help_is_a_result_and_names_every_command() {
     let folder = tempfile::tempdir().unwrap();
     let ran = run(folder.path(), &["--help"]);
     assert_eq!((ran.code, ran.messages.as_str()), (Some(0), ""));
-    for command in ["render", "merge", "chart", "bench", "inspect", "check"] {
+    for command in ["render", "merge", "chart", "bench", "inspect", "check", "language"] {
         assert!(ran.results.contains(command), "{command}");
     }
 }

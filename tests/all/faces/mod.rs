@@ -8,6 +8,7 @@ mod convert;
 #[cfg(target_os = "linux")]
 mod display;
 mod killed;
+mod language;
 mod mass;
 mod parts;
 mod window;
