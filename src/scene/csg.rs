@@ -79,6 +79,28 @@ impl Scene {
     }
 }
 
+impl Scene {
+    /// Why a solid cannot be one more operand of `whole`; `None` if it can.
+    pub fn operand_refusal(&self, whole: usize, operand: usize) -> Option<String> {
+        let name = |solid: usize| self.solids[solid].name.as_str();
+        let mut open = vec![operand];
+        let mut seen = vec![false; self.solids.len()];
+        while let Some(at) = open.pop() {
+            if at == whole {
+                let whole = name(whole);
+                return Some(match at == operand {
+                    true => format!("`{whole}` cannot be made of itself"),
+                    false => format!("`{}` is made of `{whole}`", name(operand)),
+                });
+            }
+            if !std::mem::replace(&mut seen[at], true) {
+                open.extend(self.solids[at].shape.operands());
+            }
+        }
+        unfit(self, operand).map(|(message, help)| format!("{message}: {help}"))
+    }
+}
+
 /// What is wrong with the solids of a scene that are made of others.
 pub(super) fn flaws(scene: &Scene) -> Vec<Flaw> {
     let mut flaws = Vec::new();
@@ -277,6 +299,28 @@ mod tests {
                 "solids.a.union: a solid cannot be made of itself: `a` of `a`"
             ]
         );
+    }
+
+    #[test]
+    fn what_may_become_an_operand() {
+        use Operation::{Difference, Merge};
+        let scene = scene(&[
+            ("ball", Shape::named("sphere")),
+            ("sheet", Shape::named("polygon")),
+            ("a", csg(Difference, &[0])),
+            ("b", csg(Merge, &[2, 0])),
+            ("c", csg(Merge, &[3])),
+        ]);
+        let refusal = |whole, operand| scene.operand_refusal(whole, operand).unwrap_or_default();
+        for (whole, operand) in [(2, 0), (3, 0), (3, 2), (4, 2), (4, 3)] {
+            assert_eq!(refusal(whole, operand), "");
+        }
+        assert_eq!(refusal(2, 2), "`a` cannot be made of itself");
+        assert_eq!(refusal(2, 3), "`b` is made of `a`");
+        assert_eq!(refusal(2, 4), "`c` is made of `a`");
+        let sheet = "the polygon `sheet` has no inside to be an operand: take a solid that has an \
+                     inside, such as a thin box";
+        assert_eq!(refusal(2, 1), sheet);
     }
 
     #[test]

@@ -151,7 +151,7 @@ fn value_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> bool {
             explained(label, row, None);
             false
         }
-        // Which solids one is made of is said in the scene file.
+        // The list itself stands above: see `operands.rs`.
         Slot::Solids(_) => {
             let text = slot.text(row.names);
             let label = ui.add(Label::new(text.as_str()).truncate());

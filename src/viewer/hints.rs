@@ -192,7 +192,7 @@ pub(crate) fn choice(name: &str) -> &'static str {
     }
 }
 
-/// What choosing this kind of paint, bump or background does.
+/// What choosing this kind of paint, bump, background or operation does.
 pub(crate) fn kind(name: &str) -> &'static str {
     match name {
         "color" => "One colour everywhere",
@@ -204,6 +204,11 @@ pub(crate) fn kind(name: &str) -> &'static str {
         "none" => "A smooth surface",
         "noise" => "Irregular bumps",
         "waves" => "Rings as of a drop in water",
+        "union" => "A group: every surface stays, inside of others too",
+        "merge" => "One solid: surfaces inside of others are not there",
+        "intersection" => "What is in every operand",
+        "difference" => "The first operand without the others",
+        "complement" => "All that is in no operand",
         _ => "",
     }
 }

@@ -9,6 +9,7 @@ use super::command::Command;
 use super::control::{BADGE, Row, control_ui};
 use super::kind::kind_ui;
 use super::lists::{Subject, offer_ui};
+use super::operands::operands_ui;
 use super::paints::{ImageFor, kinds_ui};
 use crate::document::things::{Thing, users};
 use crate::scene::Scene;
@@ -179,10 +180,13 @@ pub(super) fn inspector_ui(
     if let Selection::Light(i) = selection {
         outcome.changed |= kind_ui(ui, &mut scene.lights[i], known.costs);
     }
-    let names = Names::of(scene);
     let saved = texts(known.saved, same_name(scene, known.saved, selection));
     ScrollArea::vertical().auto_shrink(false).id_salt(selection).show(ui, |ui| {
         kinds_ui(ui, scene, selection, &mut outcome);
+        if let Selection::Solid(i) = selection {
+            operands_ui(ui, scene, i, &mut outcome);
+        }
+        let names = Names::of(scene);
         let mut controls = Controls {
             ui,
             selection,
@@ -207,12 +211,7 @@ pub(super) fn inspector_ui(
 fn links_ui(ui: &mut Ui, scene: &Scene, selection: Selection, outcome: &mut Outcome) {
     match selection {
         Selection::Solid(i) => {
-            let material = scene.solids[i].material;
-            let name = &scene.materials[material].name;
-            let link = ui.link(format!("Material {name}")).on_hover_text("Shows this material");
-            if link.clicked() {
-                outcome.select = Some(Selection::Material(material));
-            }
+            ui.horizontal_wrapped(|ui| solid_links_ui(ui, scene, i, outcome));
         }
         Selection::Material(i) => {
             let users = users(scene, i);
@@ -232,6 +231,28 @@ fn links_ui(ui: &mut Ui, scene: &Scene, selection: Selection, outcome: &mut Outc
             });
         }
         Selection::Scene | Selection::Light(_) => {}
+    }
+}
+
+/// Ways from a solid to its material, and to what is made of it.
+fn solid_links_ui(ui: &mut Ui, scene: &Scene, index: usize, outcome: &mut Outcome) {
+    let solid = &scene.solids[index];
+    match scene.materials.get(solid.material).filter(|_| !solid.shape.is_composite()) {
+        Some(material) => {
+            let link = ui.link(format!("Material {}", material.name));
+            if link.on_hover_text("Shows this material").clicked() {
+                outcome.select = Some(Selection::Material(solid.material));
+            }
+        }
+        None => drop(ui.weak("Its operands keep their materials")),
+    }
+    let wholes = scene.solids.iter().enumerate();
+    let wholes = wholes.filter(|(_, whole)| whole.shape.operands().contains(&index));
+    for (i, whole) in wholes.take(MOST_LINKS) {
+        let link = ui.link(format!("Part of {}", whole.name));
+        if link.on_hover_text("Shows the solid that is made of it").clicked() {
+            outcome.select = Some(Selection::Solid(i));
+        }
     }
 }
 

@@ -52,6 +52,10 @@ impl Subject {
     fn assignment(self, scene: &Scene) -> Offer {
         let solid = self.picked.and_then(|i| scene.solids.get(i));
         let verb = Command::Assign.name();
+        if solid.is_some_and(|solid| solid.shape.is_composite()) {
+            let refusal = Some("A solid that is made of others has their materials");
+            return Offer { name: verb.into(), refusal };
+        }
         match (self.selection.within(scene), solid) {
             (Selection::Material(i), Some(solid)) => Offer {
                 name: format!("Assign {} to {}", scene.materials[i].name, solid.name),

@@ -24,6 +24,7 @@ mod mixer;
 mod modal;
 mod navigate;
 mod notice;
+mod operands;
 mod outline;
 mod paints;
 mod path_field;

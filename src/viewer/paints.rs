@@ -132,7 +132,7 @@ pub(super) fn kinds_ui(
 }
 
 /// A list of kinds; the one that was chosen, if it is another.
-fn kind_ui(
+pub(super) fn kind_ui(
     ui: &mut Ui,
     what: &str,
     present: &'static str,

@@ -47,7 +47,7 @@ impl Window {
     }
 
     /// Undoes everything: the scene is as it was opened, and then as it was again.
-    fn undo_and_redo_all(&mut self, steps: usize) {
+    pub(super) fn undo_and_redo_all(&mut self, steps: usize) {
         let edited = self.app().document().scene().clone();
         for _ in 0..steps {
             assert!(self.undo_name().is_some());
@@ -61,7 +61,7 @@ impl Window {
     }
 
     /// What is saved renders afresh to what the window shows.
-    fn assert_live_is_fresh(&mut self) {
+    pub(super) fn assert_live_is_fresh(&mut self) {
         self.until_exact();
         self.save();
         assert!(rgb(&self.picture()) == rendered(self.folder.path(), "scene.toml"));

@@ -15,6 +15,7 @@ mod lists;
 mod mass;
 mod mixer;
 mod names;
+mod operands;
 mod paths;
 mod picture;
 mod questions;

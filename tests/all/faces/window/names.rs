@@ -96,7 +96,7 @@ fn tall() -> Window {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
     let pane = "pane = { polygon = { points = [[0, 5, 0], [1, 5, 0], [0, 5, 1]] }, \
-                material = \"tiles\" }\n";
+                material = \"tiles\" }\nwhole = { merge = [\"ball\"] }\n";
     std::fs::write(&path, format!("{SCENE}{pane}")).unwrap();
     let answers = vec![Answer::NoService];
     let mut window = Window::of_size(vec2(1280.0, 1400.0), folder, Some(path.clone()), answers);
@@ -125,8 +125,8 @@ impl Window {
 fn every_control_of_the_panels_has_a_name_and_a_tooltip() {
     let mut window = tall();
     window.walk(&[], 40);
-    let lines = ["mirror", "tiles", "key", "fill", "floor", "ball", "pane"];
-    for (line, least) in lines.into_iter().zip([30, 30, 6, 6, 8, 8, 8]) {
+    let lines = ["mirror", "tiles", "key", "fill", "floor", "ball", "whole", "pane"];
+    for (line, least) in lines.into_iter().zip([30, 30, 6, 6, 8, 8, 8, 8]) {
         window.click(line);
         match line {
             "mirror" => {
