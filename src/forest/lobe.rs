@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn fresnel_is_its_closed_forms() {
+    fn glass_fresnel_is_its_closed_forms() {
         for n in [1.1, 1.33, 1.5, 2.42, 10.0] {
             let facing = ((n - 1.0) / (n + 1.0f64)).powi(2);
             assert!((fresnel(1.0, 1.0 / n) - facing).abs() < 1e-14);
@@ -249,8 +249,17 @@ mod tests {
             assert!(fresnel(critical + 1e-9, n) < 1.0);
         }
         assert_eq!(fresnel(0.3, 1.0), 0.0);
-        // 45° on glass, by Fresnel's sines and tangents: (sin²(i−t)/sin²(i+t) + tan²(…)/tan²(…))/2.
-        assert!((fresnel(0.5f64.sqrt(), 1.0 / 1.5) - 0.050_239_92).abs() < 1e-7);
+        // By Fresnel's sines and tangents: (sin²(i−t)/sin²(i+t) + tan²(i−t)/tan²(i+t))/2.
+        for n in [1.1, 1.33, 1.5, 2.42, 10.0] {
+            for degrees in 1..90 {
+                let i = f64::from(degrees).to_radians();
+                let t = (i.sin() / n).asin();
+                let s = (i - t).sin() / (i + t).sin();
+                let p = (i - t).tan() / (i + t).tan();
+                let off = (fresnel(i.cos(), 1.0 / n) - (s * s + p * p) / 2.0).abs();
+                assert!(off < 1e-12, "{degrees}° into {n}: {off:e}");
+            }
+        }
     }
 
     #[test]

@@ -187,6 +187,27 @@ mod tests {
     }
 
     #[test]
+    fn glass_refracted_directions_are_of_length_one_and_lead_back() {
+        let mut bent = 0;
+        for to_eye in above() {
+            for n in [1.0001, 1.33, 1.5, 2.42] {
+                for eta in [1.0 / n, n] {
+                    let Some(through) = met(DVec3::Z, to_eye, false).refract(eta) else { continue };
+                    assert!((through.length() - 1.0).abs() <= 4.0 * f64::EPSILON, "{through}");
+                    // From below, the way it went.
+                    let back = met(DVec3::Z, through, false).refract(1.0 / eta);
+                    let Some(back) = back else { panic!("{to_eye} by {eta}: no way back") };
+                    let off = (back - to_eye).length();
+                    let bound = 1e-14 / to_eye.z.min(-through.z);
+                    assert!(off <= bound, "{to_eye} by {eta}: off by {off:e} of {bound:e}");
+                    bent += 1;
+                }
+            }
+        }
+        assert!(bent > 8000, "{bent}");
+    }
+
+    #[test]
     fn a_bump_that_bends_little_changes_little() {
         for to_eye in above() {
             let tilted = DVec3::new(1e-9, 0.0, 1.0).normalize();

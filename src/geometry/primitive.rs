@@ -221,7 +221,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn far_small_sphere() {
+    fn quadrics_far_small_sphere() {
         // A unit sphere from 1e6 away: the textbook form is wrong by 5e-5.
         for distance in [1e2, 1e4, 1e6, 1e8] {
             for offset in [0.0, 0.5, 0.999, 1.001] {
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn huge_sphere_from_just_above() {
+    fn quadrics_huge_sphere_from_just_above() {
         // Height 1 over a sphere of radius 1e6, straight down and slanted.
         let (r, h) = (1e6, 1.0);
         let o = DVec3::new(0.0, 0.0, r + h);
@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn from_the_surface_only_the_far_root() {
+    fn acne_from_the_surface_only_the_far_root() {
         let o = DVec3::new(0.0, 0.0, -2.0);
         let d = DVec3::new(0.6, 0.0, 0.8);
         assert!(sphere_roots(o, d, 1.0, 2.0, Start::Outside).far.is_nan());
@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn boxes_meet_rays_in_their_faces() {
+    fn quadrics_boxes_meet_rays_in_their_faces() {
         let corners = [DVec3::ZERO, DVec3::ONE];
         for zero in [0.0, -0.0] {
             for y in [0.0, 0.5, 1.0] {

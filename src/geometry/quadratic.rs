@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn every_kind_of_function() {
+    fn quadrics_every_kind_of_function() {
         assert_eq!(of(1.0, 0.0, -4.0), Below::Between(-2.0, 2.0));
         assert_eq!(of(1.0, -3.0, 5.0), Below::Between(1.0, 5.0));
         assert_eq!(of(-1.0, 3.0, -5.0), Below::Outside(1.0, 5.0));

@@ -172,7 +172,7 @@ fn left_of_by_error(p: Seen, q: Seen) -> bool {
 }
 
 /// a·b minus its rounded value, exact unless it underflows (Dekker, 1971).
-fn product_error(a: f64, b: f64) -> f64 {
+pub(super) fn product_error(a: f64, b: f64) -> f64 {
     let product = a * b;
     let ((a1, a2), (b1, b2)) = (halves(a), halves(b));
     ((a1 * b1 - product) + a1 * b2 + a2 * b1) + a2 * b2
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_has_exactly_one_left_side() {
+    fn mesh_an_edge_has_exactly_one_left_side() {
         let e = f64::EPSILON;
         let points = [
             seen(1.0 + e, 1.0),
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fan_around_a_vertex_has_one_owner() {
+    fn mesh_a_fan_around_a_vertex_has_one_owner() {
         let ray = Ray { origin: DVec3::new(0.1, 0.2, 5.0), direction: DVec3::NEG_Z };
         let shear = Shear::new(&ray);
         let hub = corner(DVec3::new(0.1, 0.2, 0.0));
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn a_concave_polygon_is_even_odd() {
+    fn polygon_a_concave_one_is_even_odd() {
         let u = [
             (0.0, 0.0),
             (3.0, 0.0),

@@ -161,7 +161,7 @@ fn bodies() -> Vec<Solid> {
 }
 
 #[test]
-fn hierarchy_is_the_list() {
+fn bvh_is_the_list_bit_for_bit() {
     let coincident = || (0..300).map(|_| solid(Shape::Sphere { center: DVec3::ONE, radius: 1.0 }));
     let mixed = || {
         let mut all = boxes();
@@ -189,7 +189,7 @@ fn hierarchy_is_the_list() {
 }
 
 #[test]
-fn disagreements_are_noticed() {
+fn bvh_disagreements_are_noticed() {
     let mut solids = flake();
     let geometry = build(solids.clone());
     solids.push(solid(Shape::Sphere { center: DVec3::X * 0.6, radius: 0.1 }));
@@ -197,7 +197,7 @@ fn disagreements_are_noticed() {
 }
 
 #[test]
-fn a_hundred_thousand_coincident_spheres() {
+fn bvh_of_a_hundred_thousand_coincident_spheres() {
     let one = solid(Shape::Sphere { center: DVec3::ONE, radius: 1.0 });
     let geometry = build(vec![one; 100_000]);
     let ray = Ray { origin: DVec3::new(1.0, 1.0, 5.0), direction: DVec3::NEG_Z };
@@ -206,7 +206,21 @@ fn a_hundred_thousand_coincident_spheres() {
 }
 
 #[test]
-fn extreme_sizes_together() {
+fn bvh_of_a_million_coincident_triangles() {
+    let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    let triangles = vec![[0, 1, 2]; 1_000_000];
+    let geometry = build(vec![mesh_solid(Mesh { positions, triangles, ..Mesh::default() })]);
+    assert_eq!(geometry.primitives(), 1_000_000);
+    let mut stack = Stack::new(&geometry);
+    for (x, hit) in [(0.25, true), (0.75, false)] {
+        let ray = Ray { origin: DVec3::new(x, 0.5, 5.0), direction: DVec3::NEG_Z };
+        let first = closest(&geometry, Level::new(), &mut stack, &ray, None);
+        assert_eq!(first, hit.then_some(Hit { t: 5.0, primitive: 0 }));
+    }
+}
+
+#[test]
+fn bvh_extreme_sizes_together() {
     let tiny = DVec3::splat(1e-30);
     let triangle = |s: f64| Mesh {
         positions: vec![DVec3::ZERO, DVec3::X * s, DVec3::Y * s],
@@ -235,7 +249,7 @@ fn nothing_and_cancel() {
 }
 
 #[test]
-fn powers_of_two_change_no_bit() {
+fn acne_powers_of_two_change_no_bit() {
     let mut solids = boxes();
     solids.push(mesh_solid(knot()));
     solids.extend(flake());
@@ -280,7 +294,7 @@ fn crossings(geometry: &Geometry, stack: &mut Stack, ray: &Ray) -> usize {
 }
 
 #[test]
-fn closed_meshes_are_crossed_evenly() {
+fn mesh_closed_ones_are_crossed_evenly() {
     let mut random = Random(11);
     for mesh in [triangle_cube(), knot()] {
         let geometry = build(vec![mesh_solid(mesh)]);
@@ -300,8 +314,71 @@ fn closed_meshes_are_crossed_evenly() {
     }
 }
 
+/// A ball of 20 · 4^`generations` triangles, whose coordinates f32 holds exactly.
+fn icosphere(generations: u32) -> Mesh {
+    let golden = (1.0 + 5f64.sqrt()) / 2.0;
+    let mut positions = vec![];
+    for (a, b) in [(1.0, golden), (-1.0, golden), (1.0, -golden), (-1.0, -golden)] {
+        positions.extend([DVec3::new(0.0, a, b), DVec3::new(a, b, 0.0), DVec3::new(b, 0.0, a)]);
+    }
+    let apart = |i: usize, j: usize, p: &[DVec3]| (p[i] - p[j]).length() < 2.1;
+    let mut triangles = vec![];
+    for i in 0..12 {
+        for j in i + 1..12 {
+            for k in j + 1..12 {
+                let p = &positions;
+                if apart(i, j, p) && apart(j, k, p) && apart(k, i, p) {
+                    let out = (p[j] - p[i]).cross(p[k] - p[i]).dot(p[i]) > 0.0;
+                    triangles.push(if out { [i, j, k] } else { [i, k, j] }.map(|v| v as u32));
+                }
+            }
+        }
+    }
+    for _ in 0..generations {
+        let mut middles = std::collections::HashMap::new();
+        let mut middle = |a: u32, b: u32| {
+            *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                positions.push((positions[a as usize] + positions[b as usize]) / 2.0);
+                positions.len() as u32 - 1
+            })
+        };
+        let parts = triangles.iter().flat_map(|&[a, b, c]| {
+            let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
+            [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+        });
+        triangles = parts.collect();
+    }
+    let single = |p: DVec3| p.normalize().as_vec3().as_dvec3();
+    let positions = positions.into_iter().map(single).collect();
+    Mesh { positions, triangles, ..Mesh::default() }
+}
+
 #[test]
-fn an_open_mesh_is_not_crossed_evenly() {
+fn mesh_aimed_at_vertices_and_edges_of_a_ball_nothing_leaks() {
+    let mesh = icosphere(5);
+    assert_eq!((mesh.triangles.len(), mesh.positions.len()), (20_480, 10_242));
+    let geometry = build(vec![mesh_solid(mesh.clone())]);
+    let mut stack = Stack::new(&geometry);
+    let mut random = Random(19);
+    let rays = if std::env::var_os("RAYFOREST_LONG").is_some() { 1_000_000 } else { 200_000 };
+    for i in 0..rays {
+        let [a, b, _] = mesh.triangles[random.below(mesh.triangles.len())];
+        let [a, b] = [a, b].map(|v| mesh.positions[v as usize]);
+        let target = if i % 2 == 0 { a } else { (a + b) / 2.0 };
+        let outside = i % 4 < 2;
+        let origin = match outside {
+            // Well above the horizon: the ray goes in and comes out.
+            true => target + (target.normalize() * 1.5 + random.direction()) * 4.0,
+            false => random.in_cube() * 0.5,
+        };
+        let ray = Ray { origin, direction: (target - origin).normalize() };
+        let count = crossings(&geometry, &mut stack, &ray);
+        assert_eq!(count, if outside { 2 } else { 1 }, "{ray:?} to {target}");
+    }
+}
+
+#[test]
+fn mesh_an_open_one_is_not_crossed_evenly() {
     let mut mesh = triangle_cube();
     mesh.triangles.pop();
     let geometry = build(vec![mesh_solid(mesh)]);
@@ -315,7 +392,7 @@ fn an_open_mesh_is_not_crossed_evenly() {
 }
 
 #[test]
-fn shared_edges_of_polygons_have_one_owner() {
+fn polygon_shared_edges_have_one_owner() {
     // The unit square as a concave and three convex pieces around (1/3, 1/3).
     let p = |x: f64, y: f64| DVec3::new(x, y, 0.25);
     let third = 1.0 / 3.0;

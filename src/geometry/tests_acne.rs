@@ -137,18 +137,19 @@ fn self_shadows(geometry: &Geometry, place: (f64, DVec3), count: usize, seed: u6
 }
 
 #[test]
-fn convex_bodies_never_shadow_themselves() {
+fn acne_convex_bodies_never_shadow_themselves() {
     for (scale, offset) in resolvable() {
         for (name, body) in convex() {
             let geometry = build(moved(vec![body], scale, offset));
-            let stopped = self_shadows(&geometry, (scale, offset), 15_000, 9);
+            let rays = if std::env::var_os("RAYFOREST_LONG").is_some() { 100_000 } else { 15_000 };
+            let stopped = self_shadows(&geometry, (scale, offset), rays, 9);
             assert_eq!(stopped, 0, "{name} of size {scale} at {offset}");
         }
     }
 }
 
 #[test]
-fn self_shadows_are_noticed() {
+fn acne_self_shadows_are_noticed() {
     let body = |x| {
         let center = DVec3::X * x;
         solid(Shape::Sphere { center, radius: 1.0 })
@@ -158,7 +159,7 @@ fn self_shadows_are_noticed() {
 }
 
 #[test]
-fn what_goes_in_comes_out() {
+fn acne_what_goes_in_comes_out() {
     for (scale, offset) in resolvable() {
         for (name, body) in convex() {
             let geometry = build(moved(vec![body], scale, offset));
@@ -185,7 +186,7 @@ fn what_goes_in_comes_out() {
 }
 
 #[test]
-fn planes_and_polygons_never_shadow_themselves() {
+fn acne_planes_and_polygons_never_shadow_themselves() {
     let points = vec![DVec3::NEG_ONE, DVec3::new(1.0, -1.0, 0.3), DVec3::ONE];
     let shapes = [
         Shape::Plane { normal: DVec3::new(1.0, 2.0, 3.0), offset: 0.1 },
@@ -201,7 +202,7 @@ fn planes_and_polygons_never_shadow_themselves() {
 }
 
 #[test]
-fn rays_from_a_knot_meet_it_only_elsewhere() {
+fn acne_rays_from_a_knot_meet_it_only_elsewhere() {
     // Not convex: a ray may meet it again, but only from the side that it is on. Not aimed at edges:
     // there rounding decides whether a ray that goes into one face and out of the other is inside.
     let knot =
@@ -245,7 +246,7 @@ fn hollow() -> Vec<(&'static str, Solid)> {
 }
 
 #[test]
-fn rays_from_hollow_bodies_meet_them_only_elsewhere() {
+fn acne_rays_from_hollow_bodies_meet_them_only_elsewhere() {
     for (scale, offset) in resolvable() {
         for (i, (name, mut body)) in hollow().into_iter().enumerate() {
             body.placement.rotate_degrees = DVec3::new(20.0, 30.0, 40.0);
@@ -304,7 +305,7 @@ fn acne_none_on_the_outer_half_of_a_torus() {
 }
 
 #[test]
-fn an_occluder_just_above_still_shadows() {
+fn acne_an_occluder_just_above_still_shadows() {
     // A lid over the top of each body, 1e-9 of its size above it, at every resolvable offset.
     for offset in [0.0, 1e2, 1e4, 1e6] {
         let offset = DVec3::splat(offset);

@@ -4,9 +4,10 @@
 use glam::{DVec2, DVec3};
 
 use super::frustum::Frustum;
-use super::primitive::Start;
+use super::primitive::{Start, sphere_roots};
 use super::prism::Prism;
 use super::quadric::Quadric;
+use super::shear::product_error;
 use super::testing::Random;
 use super::torus::Torus;
 
@@ -213,6 +214,90 @@ fn wrong_crossings_are_noticed() {
     assert!(of(&[3.7, 4.3, 5.7]).is_some(), "odd");
     assert!(of(&[3.7, 4.3, 4.3001, 4.3002, 5.7, 6.3]).is_some(), "invented");
     assert!(of(&[3.7, 4.3, 5.7, 6.3 + 1e-12]).is_some(), "imprecise");
+}
+
+/// An unevaluated sum of two numbers: about 32 digits (Dekker, 1971).
+#[derive(Clone, Copy)]
+struct Wide(f64, f64);
+
+impl Wide {
+    fn sum(a: f64, b: f64) -> Wide {
+        let sum = a + b;
+        let part = sum - a;
+        Wide(sum, (a - (sum - part)) + (b - part))
+    }
+
+    fn product(a: f64, b: f64) -> Wide {
+        Wide(a * b, product_error(a, b))
+    }
+
+    fn plus(self, other: Wide) -> Wide {
+        let Wide(sum, error) = Wide::sum(self.0, other.0);
+        Wide::sum(sum, error + self.1 + other.1)
+    }
+
+    fn minus(self, other: Wide) -> Wide {
+        self.plus(Wide(-other.0, -other.1))
+    }
+
+    fn squared(self) -> Wide {
+        let Wide(square, error) = Wide::product(self.0, self.0);
+        Wide::sum(square, error + 2.0 * self.0 * self.1)
+    }
+}
+
+/// How much farther than r a line passes the origin, and how far points of it are from |p| = r.
+fn beside(o: DVec3, d: DVec3, r: f64, ts: &[f64]) -> (f64, Vec<f64>) {
+    let add = |[a, b, c]: [Wide; 3]| a.plus(b).plus(c);
+    let moment = |i: usize, j: usize| Wide::product(o[i], d[j]).minus(Wide::product(o[j], d[i]));
+    let moments = add([moment(1, 2), moment(2, 0), moment(0, 1)].map(Wide::squared));
+    let lengths = add([0, 1, 2].map(|i| Wide::product(d[i], d[i])));
+    let Wide(high, low) = Wide::product(r, r);
+    let reach = Wide(high * lengths.0, product_error(high, lengths.0));
+    let reach = reach.plus(Wide(high * lengths.1 + low * lengths.0, 0.0));
+    let passed = (moments.0 / lengths.0).sqrt();
+    let beyond = moments.minus(reach).0 / (lengths.0 * (passed + r));
+    let off = |t: &f64| {
+        let at = |i: usize| Wide::sum(o[i], 0.0).plus(Wide::product(*t, d[i])).squared();
+        add([at(0), at(1), at(2)]).minus(Wide(high, low)).0 / (2.0 * r)
+    };
+    (beyond, ts.iter().map(off).collect())
+}
+
+#[test]
+fn quadrics_spheres_of_all_sizes_and_distances_are_decided_within_eight_roundings() {
+    let mut random = Random(37);
+    let (mut decided, mut met, mut worst) = (0, 0, 0.0f64);
+    for i in 0..200_000 {
+        let r = 10f64.powi(i % 9 - 4) * (1.0 + 0.5 * random.signed());
+        let far = r * 10f64.powf(4.0 + 3.7 * random.signed());
+        let o = random.direction() * far;
+        // At the rim and about it, by all powers of ten.
+        let rim = o.cross(random.direction()).normalize() * r;
+        let beside_rim = 1.0 + random.signed() * 10f64.powi(-(random.below(17) as i32));
+        let d = (rim * beside_rim - o).normalize();
+        let roots = sphere_roots(o, d, 1.0, r, Start::Elsewhere);
+        let ts =
+            [roots.near, roots.far].map(|t| if t.is_nan() { vec![] } else { vec![t] }).concat();
+        let (beyond, off) = beside(o, d, r, &ts);
+        assert!(ts.len() != 1, "{ts:?}");
+        if beyond.abs() > 8.0 * EPS * far {
+            assert_eq!(ts.len() == 2, beyond < 0.0, "{beyond:e} beside {r} from {far}");
+            decided += 1;
+            met += usize::from(!ts.is_empty());
+        }
+        worst = off.iter().fold(worst, |worst, off| worst.max(off.abs() / (EPS * far.max(r))));
+    }
+    assert!(worst <= 4.0, "a point is {worst} ε·max(d, r) off");
+    assert!(decided > 100_000 && met > 30_000, "{decided} {met}");
+}
+
+#[test]
+fn quadrics_a_wrong_decision_is_noticed() {
+    let (o, d) = (DVec3::new(1.0, 0.0, -1e6), DVec3::Z);
+    let (beyond, off) = beside(o, d, 1.0 + EPS, &[1e6, 1e6 + 1e-6]);
+    assert!((beyond + EPS).abs() < 1e-20, "{beyond:e}");
+    assert!((off[0] + EPS).abs() < 1e-20 && (off[1] / 5e-13 - 1.0).abs() < 1e-2, "{off:?}");
 }
 
 #[test]

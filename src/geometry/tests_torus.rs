@@ -150,6 +150,142 @@ fn torus_no_crossing_is_lost_or_invented() {
     }
 }
 
+/// Rays with exact roots: see `tests/torus/README.md`.
+const RAYS: &[u8] = include_bytes!("../../tests/torus/rays.bin");
+
+/// A ray with its exact roots and their multiplicities.
+struct Known {
+    minor: f64,
+    o: DVec3,
+    d: DVec3,
+    roots: Vec<(f64, u32)>,
+}
+
+/// The categories of [`RAYS`] by name.
+fn known() -> Vec<(String, Vec<Known>)> {
+    let mut rest = RAYS;
+    let mut take = |count: usize| {
+        let (head, tail) = rest.split_at(count);
+        rest = tail;
+        (head, tail.is_empty())
+    };
+    let number = |bytes: &[u8]| u32::from_le_bytes(bytes.try_into().unwrap());
+    let float = |bytes: &[u8]| f64::from_le_bytes(bytes.try_into().unwrap());
+    let mut all = vec![];
+    loop {
+        let (name, count) = (number(take(4).0) as usize, number(take(4).0));
+        let name = String::from_utf8(take(name).0.to_vec()).unwrap();
+        let mut rays = vec![];
+        let mut ended = false;
+        for _ in 0..count {
+            let mut three = || DVec3::from([0; 3].map(|_| float(take(8).0)));
+            let (o, d) = (three(), three());
+            let minor = float(take(8).0);
+            let (roots, empty) = take(4);
+            ended = empty;
+            let root = |_| {
+                let t = float(take(8).0);
+                let (multiplicity, empty) = take(4);
+                ended = empty;
+                (t, number(multiplicity))
+            };
+            let roots = (0..number(roots)).map(root).collect();
+            rays.push(Known { minor, o, d, roots });
+        }
+        all.push((name, rays));
+        if ended {
+            return all;
+        }
+    }
+}
+
+/// What a solver does with known rays.
+#[derive(Debug, Default)]
+struct Faults {
+    /// Isolated roots without an answer.
+    missed: usize,
+    /// Answers that are no root.
+    spurious: usize,
+    /// Rays with an odd number of answers.
+    odd: usize,
+    /// By how many tolerances the worst answer is off.
+    worst: f64,
+}
+
+/// Roots isolated by 1e-5 count; an answer is one within 1e-4. It may be off by 1e-14 of the distance;
+/// at a line that is δ within a tangent, by 8 ε/√δ.
+fn faults(solver: Solver, rays: &[Known], delta: Option<f64>) -> Faults {
+    let mut faults = Faults::default();
+    for Known { minor, o, d, roots } in rays {
+        let found = solver(*minor, *o, *d);
+        faults.odd += found.len() % 2;
+        // Of a tube without a hole what is within itself is no surface.
+        let outer = |t: f64| {
+            let p = *o + *d * t;
+            let rho = p.truncate().length();
+            let [near, far] = [rho - 1.0, rho + 1.0].map(|x| (x.hypot(p.z) - minor).abs());
+            *minor < 1.0 || near <= far
+        };
+        let near = |t: f64| found.iter().map(|f| (f - t).abs()).fold(f64::INFINITY, f64::min);
+        for (i, (t, multiplicity)) in roots.iter().enumerate().filter(|(_, (t, _))| outer(*t)) {
+            let others = roots.iter().enumerate().filter(|(j, _)| *j != i);
+            let gap = others.map(|(_, (u, _))| (t - u).abs()).fold(f64::INFINITY, f64::min);
+            if *multiplicity > 1 || gap <= 1e-5 {
+                continue;
+            }
+            let off = near(*t);
+            faults.missed += usize::from(off > 1e-4);
+            let plain = 1e-14 * o.length().max(1.0);
+            let tolerance = match delta {
+                Some(delta) if gap <= 1e-2 => plain.max(8.0 * EPS / delta.sqrt()),
+                _ if gap <= 1e-2 => plain * (1.0 + 2.0 * minor / gap),
+                _ => plain,
+            };
+            faults.worst = faults.worst.max(off / tolerance);
+        }
+        let is_root = |f: &f64| roots.iter().any(|(t, _)| (f - t).abs() <= 1e-4);
+        faults.spurious += found.iter().filter(|f| !is_root(f)).count();
+    }
+    faults
+}
+
+/// How far within or without a tangent the lines of a category are.
+fn delta(name: &str) -> Option<f64> {
+    name.starts_with("tangent").then(|| name.rsplit('_').next()?.parse().ok()).flatten()
+}
+
+#[test]
+fn torus_in_29_categories_no_exact_root_is_lost_or_invented() {
+    let categories = known();
+    assert_eq!((categories.len(), delta("tangent_inside_1e-10")), (29, Some(1e-10)));
+    let mut bad = vec![];
+    for (name, rays) in &categories {
+        assert_eq!(rays.len(), 60);
+        let faults = faults(ours, rays, delta(name));
+        let Faults { missed, spurious, odd, worst } = faults;
+        if missed + spurious + odd > 0 || worst > 1.0 {
+            bad.push(format!("{name}: {faults:?}"));
+        }
+    }
+    assert_eq!(bad, [""; 0]);
+}
+
+#[test]
+fn torus_lost_invented_odd_and_imprecise_roots_are_noticed() {
+    let categories = known();
+    let (name, rays) = &categories[0];
+    assert_eq!(name, "generic_r=.3_d=5");
+    let of = |solver: Solver| faults(solver, rays, None);
+    assert!(of(|r, o, d| ours(r, o, d).split_off(1)).missed > 0);
+    let invented: Solver = |r, o, d| ours(r, o, d).into_iter().flat_map(|t| [t, t + 1.0]).collect();
+    assert!(of(invented).spurious > 0);
+    assert!(of(|r, o, d| [ours(r, o, d), vec![9.0]].concat()).odd > 0);
+    assert!(of(|r, o, d| ours(r, o, d).iter().map(|t| t + 1e-12).collect()).worst > 1.0);
+    let closed: usize =
+        categories.iter().map(|(_, rays)| faults(ferrari_shifted, rays, None).missed).sum();
+    assert!(closed > 0, "a closed solution loses roots");
+}
+
 #[test]
 fn torus_wrong_crossings_are_noticed() {
     let cases = [level(0.3, 0.25, 0.125, 4.0)];

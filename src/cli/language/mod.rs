@@ -65,11 +65,12 @@ impl Section {
 
     fn markdown(&self) -> String {
         let Section { heading, text, from, rows } = self;
-        let mut all = format!("\n{heading}\n\n");
+        let mut all = format!("\n{heading}\n");
         if !text.is_empty() {
-            all += &format!("{}\n\n", text.trim());
+            all += &format!("\n{}\n", text.trim());
         }
         if !rows.is_empty() {
+            all += "\n";
             all += "| key | value | range | default | an edit | what it is |\n";
             all += "|---|---|---|---|---|---|\n";
         }
@@ -149,7 +150,7 @@ fn materials() -> Vec<Section> {
 fn solids() -> Vec<Section> {
     let from = "solids.NAME.";
     let general = Section::of("## `[solids.NAME]`", from, &["sphere"], &|_| {});
-    let mut all = vec![general.saying(text::SOLIDS)];
+    let mut all = vec![general.saying(text::solids())];
     let shape = |key: &&'static str| {
         let make = |scene: &mut Scene| scene.solids[0].shape = Shape::named(key);
         let others = ["material", "rotate_degrees", "translate", "scale", "motion"];

@@ -2,6 +2,7 @@
 
 use crate::scene::change::Change;
 use crate::scene::fields::{self, Need, Visit};
+use crate::scene::model::Model;
 use crate::scene::range::Kind;
 use crate::scene::slot::Slot;
 use crate::scene::value::Names;
@@ -71,13 +72,17 @@ fn clear() -> Scene {
     for material in &mut scene.materials {
         (material.reflect.0, material.transmit.0) = ([0.5; 3], [0.4; 3]);
     }
+    // Another one that a solid may get, which takes its place where solids overlap.
+    scene.materials.push(Material { priority: 1, ..Material::new("OTHER") });
     scene
 }
 
-/// The same with Fresnel's weights.
+/// The same with Fresnel's weights, another highlight, and another material that leads rays alike.
 fn weighed() -> Scene {
     let mut scene = clear();
-    scene.materials[0].fresnel = true;
+    let material = &mut scene.materials[0];
+    (material.fresnel, material.model) = (true, Model::CookTorrance);
+    scene.materials[1] = Material { name: "OTHER".to_owned(), ..material.clone() };
     scene
 }
 
@@ -193,7 +198,9 @@ mod tests {
             ("materials.NAME.diffuse", "instant"),
             ("materials.NAME.reflect", "instant up to a limit"),
             ("materials.NAME.shininess", "refold"),
+            ("materials.NAME.roughness", "refold"),
             ("materials.NAME.ior", "traces some"),
+            ("solids.NAME.material", "rereads … traces all"),
             ("materials.NAME.gloss", "traces some"),
             ("materials.NAME.priority", "traces all"),
         ] {

@@ -60,7 +60,13 @@ pub(super) const TEXTURES: &str = "In place of `color`: a pattern in space, whic
 
 pub(super) const BUMPS: &str = "The shading normal is bent; the solid keeps its shape.";
 
-pub(super) const SOLIDS: &str = "A solid has exactly one of the shapes below, and:";
+/// What stands above the keys that every solid has.
+pub(super) fn solids() -> String {
+    format!(
+        "A solid has exactly one of the shapes below, and the keys of this table. A knot has at most \
+         {MAX_KNOT_FACES} faces."
+    )
+}
 
 /// Each name with what it does.
 fn choices(key: &str, names: &[&str]) -> String {
@@ -92,8 +98,7 @@ pub(super) fn operations() -> String {
         "Operands are named: `difference = [\"block\", \"bore\"]`. They are not seen by themselves and \
          keep their materials, placements and motions, to which those of the whole come on top; one \
          may serve several times, and be made of others itself, up to {MOST_DEEP} deep and of \
-         {MOST_PARTS} plain solids in all. Polygons, sphereflakes and open meshes cannot be operands. \
-         A knot has at most {MAX_KNOT_FACES} faces. For what is refracted the whole is one medium, \
+         {MOST_PARTS} plain solids in all. Polygons, sphereflakes and open meshes cannot be operands. For what is refracted the whole is one medium, \
          that of the operand by which it was entered."
     )
 }

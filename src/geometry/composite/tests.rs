@@ -69,6 +69,12 @@ fn contains(solids: &[Solid], index: usize, point: DVec3, margin: f64) -> Option
         Shape::Sphere { center, radius } => sided(radius - (p - *center).length()),
         Shape::Box { min, max } => sided((p - *min).min(*max - p).min_element()),
         Shape::Plane { normal, offset } => sided(offset - normal.normalize().dot(p)),
+        Shape::Ellipsoid { center, radii } => {
+            sided((1.0 - ((p - *center) / *radii).length()) * radii.min_element())
+        }
+        Shape::Torus { major, minor } => sided(minor - (p.truncate().length() - major).hypot(p.z)),
+        Shape::Cylinder { from, to, radius } => sided(frustum(p, [*from, *to], [*radius; 2])),
+        Shape::Cone { from, to, radius, tip } => sided(frustum(p, [*from, *to], [*radius, *tip])),
         Shape::Csg { operation, operands } => {
             let inside = |&i: &usize| contains(solids, i, p, margin);
             let of: Option<Vec<bool>> = operands.iter().map(inside).collect();
@@ -82,6 +88,53 @@ fn contains(solids: &[Solid], index: usize, point: DVec3, margin: f64) -> Option
         }
         _ => panic!("no rule for {shape:?}"),
     }
+}
+
+/// How far a point is inside a cone that is cut off: from its side, or from an end.
+fn frustum(p: DVec3, [from, to]: [DVec3; 2], [first, last]: [f64; 2]) -> f64 {
+    let length = (to - from).length();
+    let axis = (to - from) / length;
+    let z = (p - from).dot(axis);
+    let slope = (last - first) / length;
+    let side = first + slope * z - (p - from - axis * z).length();
+    (side / 1f64.hypot(slope)).min(z).min(length - z)
+}
+
+/// One of seven kinds of plain solids, of about size 1.
+fn random_body(random: &mut Random) -> Solid {
+    let (a, b) = (random.in_cube(), random.in_cube());
+    let size = 0.6 + 0.4 * random.signed();
+    let (from, to) = (a, b + (b - a).normalize_or(DVec3::X) * 0.2);
+    solid(match random.below(7) {
+        0 => Shape::Sphere { center: a, radius: size },
+        1 => Shape::Box { min: a.min(b) - 0.1, max: a.max(b) + 0.1 },
+        2 => Shape::Plane { normal: random.direction(), offset: a.x },
+        3 => Shape::Cylinder { from, to, radius: size },
+        4 => Shape::Cone { from, to, radius: size, tip: [0.0, a.x.abs()][random.below(2)] },
+        5 => Shape::Torus { major: 0.9, minor: size },
+        _ => Shape::Ellipsoid { center: a, radii: DVec3::splat(size) + b.abs() * 0.5 },
+    })
+}
+
+/// A random tree of operations over such solids, added to the list.
+fn random_tree(random: &mut Random, depth: u32, solids: &mut Vec<Solid>) -> usize {
+    let mut made = if depth == 0 || random.below(5) == 0 {
+        random_body(random)
+    } else {
+        let count = 1 + random.below(3);
+        let operands: Vec<usize> =
+            (0..count).map(|_| random_tree(random, depth - 1, solids)).collect();
+        csg([Merge, Intersection, Difference, Complement][random.below(4)], &operands)
+    };
+    if random.below(2) == 0 {
+        made.placement = Placement {
+            translate: random.in_cube() * 0.5,
+            rotate_degrees: random.in_cube() * 180.0,
+            scale: DVec3::ONE + random.in_cube() * [0.0, 0.2][random.below(2)],
+        };
+    }
+    solids.push(made);
+    solids.len() - 1
 }
 
 /// A random solid made of at most `depth` generations of others, added to the list.
@@ -114,7 +167,7 @@ fn random_solid(random: &mut Random, depth: u32, solids: &mut Vec<Solid>) -> usi
 }
 
 #[test]
-fn midpoints_of_intervals_are_members() {
+fn csg_midpoints_of_intervals_are_members() {
     let mut random = Random(7);
     let (mut tested, mut inside_seen) = (0, 0);
     for _ in 0..400 {
@@ -126,36 +179,91 @@ fn midpoints_of_intervals_are_members() {
         let geometry = build(solids.clone());
         for _ in 0..40 {
             let ray = ray(&mut random, 3.0);
-            let mut ts = vec![0.0];
-            ts.extend(crossings(&geometry, &ray).iter().map(|(t, _)| *t));
-            ts.push(ts[ts.len() - 1] + 3.0);
-            let mut before = None;
-            for pair in ts.windows(2) {
-                let middle = ray.origin + ray.direction * (pair[0] + pair[1]) * 0.5;
-                let inside = contains(&solids, whole, middle, 1e-12);
-                tested += usize::from(inside.is_some());
-                inside_seen += usize::from(inside == Some(true));
-                if let (Some(before), Some(inside)) = (before, inside) {
-                    assert_ne!(
-                        before, inside,
-                        "nothing begins or ends between {pair:?} of {solids:?}"
-                    );
-                }
-                before = inside;
-                // And nothing is missing in between.
-                for k in 1..8 {
-                    let t = pair[0] + (pair[1] - pair[0]) * f64::from(k) / 8.0;
-                    let at = contains(&solids, whole, ray.origin + ray.direction * t, 1e-9);
-                    assert!(at.is_none() || inside.is_none() || at == inside, "{t} of {solids:?}");
-                }
-            }
+            let [all, inside] = walk(&solids, whole, &geometry, &ray, [1e-12, 1e-9]);
+            (tested, inside_seen) = (tested + all, inside_seen + inside);
         }
     }
     assert!(tested > 10_000 && inside_seen > 3_000, "{tested} {inside_seen}");
 }
 
+/// Holds what is between the crossings of a ray to the definition: the middle of every interval, and
+/// seven points of it, by their margins. Gives how many middles were decided, and how many are inside.
+fn walk(
+    solids: &[Solid],
+    whole: usize,
+    geometry: &Geometry,
+    ray: &Ray,
+    margins: [f64; 2],
+) -> [usize; 2] {
+    let mut ts = vec![0.0];
+    ts.extend(crossings(geometry, ray).iter().map(|(t, _)| *t));
+    ts.push(ts[ts.len() - 1] + 3.0);
+    let (mut before, mut counts) = (None, [0, 0]);
+    let at = |t: f64, margin: f64| contains(solids, whole, ray.origin + ray.direction * t, margin);
+    for pair in ts.windows(2) {
+        let inside = at((pair[0] + pair[1]) * 0.5, margins[0]);
+        counts[0] += usize::from(inside.is_some());
+        counts[1] += usize::from(inside == Some(true));
+        if let (Some(before), Some(inside)) = (before, inside) {
+            assert_ne!(before, inside, "nothing begins or ends between {pair:?} of {solids:?}");
+        }
+        before = inside;
+        // And nothing is missing in between.
+        for k in 1..8 {
+            let t = pair[0] + (pair[1] - pair[0]) * f64::from(k) / 8.0;
+            let at = at(t, margins[1]);
+            assert!(at.is_none() || inside.is_none() || at == inside, "{t} of {solids:?}");
+        }
+    }
+    counts
+}
+
+/// 16 ε (|t| + |centre|) of what is up to ten away from the origin of rays within three.
+const SIXTEEN_ROUNDINGS: f64 = 16.0 * f64::EPSILON * 30.0;
+
 #[test]
-fn a_membership_that_is_wrong_is_seen() {
+fn csg_trees_of_seven_kinds_six_deep_agree_with_membership() {
+    let mut random = Random(17);
+    let trees = if std::env::var_os("RAYFOREST_LONG").is_some() { 2_500 } else { 400 };
+    let mut sum = [0, 0];
+    for _ in 0..trees {
+        let mut solids = Vec::new();
+        let whole = random_tree(&mut random, 6, &mut solids);
+        if !solids[whole].shape.is_composite() {
+            continue;
+        }
+        let geometry = build(solids.clone());
+        for _ in 0..40 {
+            let ray = ray(&mut random, 3.0);
+            let counts = walk(&solids, whole, &geometry, &ray, [SIXTEEN_ROUNDINGS; 2]);
+            sum = [sum[0] + counts[0], sum[1] + counts[1]];
+        }
+    }
+    assert!(sum[0] > 40 * trees && sum[1] > 8 * trees, "{sum:?} of {trees}");
+}
+
+#[test]
+fn csg_tangents_are_crossed_evenly() {
+    // Past a ball, a rod and a ring, just within and just beyond, each less something far below.
+    let ring = Shape::Torus { major: 0.75, minor: 0.25 };
+    let rod = Shape::Cylinder { from: DVec3::NEG_Z, to: DVec3::Z, radius: 1.0 };
+    for body in [ball(DVec3::ZERO, 1.0), solid(rod), solid(ring)] {
+        let solids = [body, below(-9.0), csg(Difference, &[0, 1])];
+        for exponent in 2..=15 {
+            for sign in [-1.0, 1.0] {
+                let x = 1.0 + sign * 10f64.powi(-exponent);
+                let ray = Ray { origin: DVec3::new(x, -5.0, 0.0), direction: DVec3::Y };
+                let count = ts(&solids, &ray).len();
+                let clear = exponent < 14;
+                assert!(count.is_multiple_of(2) && count <= 2, "{count} at {x}");
+                assert!(!clear || (count == 2) == (sign < 0.0), "{count} at {x}");
+            }
+        }
+    }
+}
+
+#[test]
+fn csg_a_membership_that_is_wrong_is_seen() {
     let solids = [cube(1.0), ball(DVec3::ZERO, 1.2), csg(Difference, &[0, 1])];
     assert_eq!(contains(&solids, 2, DVec3::splat(0.9), 1e-9), Some(true));
     assert_eq!(contains(&solids, 2, DVec3::ZERO, 1e-9), Some(false));
@@ -163,7 +271,7 @@ fn a_membership_that_is_wrong_is_seen() {
 }
 
 #[test]
-fn normals_point_out_of_the_whole_and_rays_leave_as_they_were_met() {
+fn csg_normals_point_out_of_the_whole_and_rays_leave_as_they_were_met() {
     let mut random = Random(11);
     let mut met = 0;
     for _ in 0..300 {
@@ -224,7 +332,7 @@ fn same(solids: &[Solid], ways: &[Vec<Solid>], random: &mut Random) {
 }
 
 #[test]
-fn laws_of_the_algebra() {
+fn csg_laws_of_the_algebra() {
     let mut random = Random(3);
     let mut turned = cube(0.9);
     turned.placement.rotate_degrees = DVec3::new(20.0, 30.0, 40.0);
@@ -299,7 +407,7 @@ fn laws_of_the_algebra() {
 }
 
 #[test]
-fn what_is_cut_from_itself_is_nothing() {
+fn csg_what_is_cut_from_itself_is_nothing() {
     let mut random = Random(5);
     for _ in 0..30 {
         let mut solids = Vec::new();
@@ -321,7 +429,7 @@ fn what_is_cut_from_itself_is_nothing() {
 /// A pocket and a through hole whose faces lie in the block's own, everything turned and moved, each
 /// solid by a placement of its own: no ray sees a skin.
 #[test]
-fn coincident_faces_leave_no_skin() {
+fn csg_coincident_faces_leave_no_skin() {
     let mut random = Random(13);
     let (mut floors, mut through, mut walls) = (0, 0, 0);
     for round in 0..1000 {
@@ -368,7 +476,7 @@ fn coincident_faces_leave_no_skin() {
 }
 
 #[test]
-fn a_thin_plate_is_kept() {
+fn csg_a_thin_plate_is_kept() {
     for thickness in [1e-6, 1e-9, 1e-12] {
         let cut = block(DVec3::splat(-2.0), DVec3::new(2.0, 2.0, 1.0 - thickness));
         let solids = [cube(1.0), cut, csg(Difference, &[0, 1])];
@@ -380,7 +488,7 @@ fn a_thin_plate_is_kept() {
 }
 
 #[test]
-fn faces_that_touch_vanish_in_a_merge_and_stay_in_a_union() {
+fn csg_faces_that_touch_vanish_in_a_merge_and_stay_in_a_union() {
     let [left, right] =
         [-1.0, 0.0].map(|x| block(DVec3::new(x, 0.0, 0.0), DVec3::new(x + 1.0, 1.0, 1.0)));
     let ray = Ray { origin: DVec3::new(-2.0, 0.3, 0.4), direction: DVec3::X };
@@ -397,7 +505,7 @@ fn faces_that_touch_vanish_in_a_merge_and_stay_in_a_union() {
 }
 
 #[test]
-fn overlapping_balls_merge_to_two_crossings_and_unite_to_four() {
+fn csg_overlapping_balls_merge_to_two_crossings_and_unite_to_four() {
     let balls = [ball(DVec3::ZERO, 1.0), ball(DVec3::X, 1.0)];
     let ray = Ray { origin: DVec3::X * -5.0, direction: DVec3::X };
     for (operation, expected) in [(Merge, vec![4.0, 7.0]), (Union, vec![4.0, 5.0, 6.0, 7.0])] {
@@ -409,7 +517,7 @@ fn overlapping_balls_merge_to_two_crossings_and_unite_to_four() {
 }
 
 #[test]
-fn a_union_moves_its_operands() {
+fn csg_a_union_moves_its_operands() {
     let mut made = csg(Union, &[0, 1]);
     made.placement = Placement {
         translate: DVec3::new(0.0, 0.0, 5.0),
@@ -435,7 +543,7 @@ fn a_union_moves_its_operands() {
 }
 
 #[test]
-fn half_spaces_and_complements_have_no_end() {
+fn csg_half_spaces_and_complements_have_no_end() {
     let slab = [below(1.0), below(-1.0), csg(Difference, &[0, 1])];
     let down = Ray { origin: DVec3::new(0.3, 0.4, 5.0), direction: DVec3::NEG_Z };
     assert_eq!(ts(&slab, &down), [4.0, 6.0]);
@@ -454,7 +562,7 @@ fn half_spaces_and_complements_have_no_end() {
 }
 
 #[test]
-fn nothing_is_made_of_what_is_apart() {
+fn csg_nothing_is_made_of_what_is_apart() {
     let balls = [ball(DVec3::ZERO, 1.0), ball(DVec3::X * 5.0, 1.0)];
     let solids = vec![balls[0].clone(), balls[1].clone(), csg(Intersection, &[0, 1])];
     let geometry = build(solids);
@@ -471,7 +579,7 @@ fn nothing_is_made_of_what_is_apart() {
 }
 
 #[test]
-fn the_bounds_of_a_difference_are_those_of_its_first() {
+fn csg_the_bounds_of_a_difference_are_those_of_its_first() {
     let bounds = |solids: &[Solid]| build(solids.to_vec()).bounds().unwrap();
     let big = ball(DVec3::ZERO, 100.0);
     let near = |a: [DVec3; 2], half: f64| {

@@ -15,7 +15,7 @@ use Operation::{Difference, Intersection, Merge, Union};
 
 /// A cube of triangles is the cube: bored, boring, and left by rays from every side.
 #[test]
-fn a_closed_mesh_is_a_solid() {
+fn csg_a_closed_mesh_is_a_solid() {
     let mut random = Random(21);
     for _ in 0..60 {
         let place = Placement {
@@ -59,7 +59,7 @@ fn a_closed_mesh_is_a_solid() {
 
 /// From a wall of a bore, at every angle, the wall itself is not met; its other side is.
 #[test]
-fn no_acne_in_a_bore() {
+fn acne_none_in_a_bore() {
     let mut random = Random(2);
     for scale in [1e-6, 1.0, 1e6] {
         for offset in [0.0, 1e2, 1e4, 1e6].map(|o| DVec3::splat(o * scale)) {
@@ -99,7 +99,7 @@ fn no_acne_in_a_bore() {
 /// What moves, within what moves, is met where it is at the ray's time; patterns stay where they were
 /// as the shutter opened.
 #[test]
-fn operands_are_where_they_are_at_the_time_of_the_ray() {
+fn csg_operands_are_where_they_are_at_the_time_of_the_ray() {
     let mut random = Random(31);
     let mut met = 0;
     for round in 0..40 {

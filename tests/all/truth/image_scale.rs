@@ -144,7 +144,7 @@ fn beyond_one(a: &Frame, b: &Frame) -> f64 {
 }
 
 #[test]
-fn a_power_of_two_changes_no_bit() {
+fn acne_a_power_of_two_changes_no_bit_of_a_picture() {
     for (name, scene) in scenes() {
         let session = open(scene.clone());
         for exponent in [-20, -7, 5, 20] {
@@ -159,7 +159,7 @@ fn a_power_of_two_changes_no_bit() {
 }
 
 #[test]
-fn a_million_units_away_it_is_the_same_picture() {
+fn acne_a_million_units_away_it_is_the_same_picture() {
     for (name, scene) in scenes() {
         let session = open(scene.clone());
         for by in [[1e6, 1e6, 1e6], [-1e6, 1e6, 0.0], [0.0, -1e6, -1e6]] {

@@ -2,6 +2,7 @@
 //! and the same scene in other units.
 
 mod evaluator;
+mod fuzz;
 mod golden;
 mod image_scale;
 mod lens;

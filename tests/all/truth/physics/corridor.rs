@@ -51,7 +51,7 @@ fn rounding(n: i32) -> f64 {
 }
 
 #[test]
-fn facing_mirrors_show_the_geometric_series() {
+fn recursion_facing_mirrors_show_the_geometric_series() {
     for kr in [0.5f32, 0.9, 0.99] {
         for (depth, cutoff) in
             [(0, 0.0), (1, 0.0), (5, 0.0), (20, 1.0 / 255.0), (64, 1.0 / 255.0), (64, 0.0)]
@@ -91,7 +91,7 @@ fn check_distances(tree: &Tree, nodes: usize, what: &str) {
 }
 
 #[test]
-fn another_series_is_seen() {
+fn recursion_another_series_is_seen() {
     let session = open(corridor(0.9, 0.0, false));
     let n = 64;
     let other = f64::from(GLOW) * (1.0 - 0.9f64.powi(n)) / 0.1;
@@ -100,7 +100,7 @@ fn another_series_is_seen() {
 
 /// A ray through 32 concentric shells meets 64 surfaces, the most a path may have branches.
 #[test]
-fn sixty_four_branches_are_followed_and_no_more() {
+fn recursion_sixty_four_branches_are_followed_and_no_more() {
     for (shells, seen) in [(31, true), (32, true), (33, false)] {
         let kt = 0.95f32;
         let material = Material { transmit: Rgb::grey(kt), ..clear(1.3) };

@@ -125,7 +125,7 @@ fn white_paint_vanishes() {
 /// A glass ball that reflects ¼ and transmits ¾: after the light that enters, every meeting with
 /// the surface from inside keeps ¼. The depth limit d cuts ¾·¼^(d−1).
 #[test]
-fn a_ball_that_splits_rays_lacks_what_the_depth_limit_cuts() {
+fn glass_that_splits_rays_lacks_what_the_depth_limit_cuts() {
     for depth in [1, 2, 5, 12] {
         let material =
             Material { reflect: Rgb::grey(0.25), transmit: Rgb::grey(0.75), ..clear(1.5) };

@@ -168,7 +168,7 @@ fn an_opaque_room_bends_nothing() {
 /// Many rays through five nested balls, and through five that overlap: each is left as often as it
 /// was entered.
 #[test]
-fn nested_balls_are_left_as_they_were_entered() {
+fn glass_nested_balls_are_left_as_they_were_entered() {
     for (step, shrink) in [(0.0, 0.8), (0.15, 0.85), (0.5, 1.0)] {
         for priorities in [[0; 5], [0, 1, 2, 3, 4], [3, 1, 4, 1, 5]] {
             let mut scene = down(9.0, 0.0, &[]);

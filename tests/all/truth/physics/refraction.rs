@@ -294,7 +294,7 @@ fn from_within(angle: f64) -> [(&'static str, Leg, Shape); 3] {
 }
 
 #[test]
-fn total_reflection_begins_at_the_critical_angle() {
+fn glass_total_reflection_begins_at_the_critical_angle() {
     let critical = (1.0 / N).asin();
     assert!((critical.to_degrees() - 41.810_314_895_778_596).abs() < 1e-13);
     for beyond in [-0.1, -1e-6, -1e-9, 1e-9, 1e-6, 0.1] {
