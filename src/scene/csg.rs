@@ -231,11 +231,18 @@ fn operands_first(scene: &Scene) -> Result<Vec<usize>, Flaw> {
     Ok(order)
 }
 
+/// Most names of a circle that a message lists.
+const MOST_NAMED: usize = 8;
+
 fn made_of_itself(scene: &Scene, way: &[(usize, usize)], again: usize) -> Flaw {
     let name = |solid: usize| scene.solids[solid].name.as_str();
     let circle = way.iter().skip_while(|(solid, _)| *solid != again).map(|(solid, _)| name(*solid));
     let mut circle: Vec<String> = circle.map(|name| format!("`{name}`")).collect();
     circle.push(format!("`{}`", name(again)));
+    if circle.len() > MOST_NAMED {
+        let left = circle.len() + 1 - MOST_NAMED;
+        circle.splice(MOST_NAMED - 2..circle.len() - 1, [format!("{left} more")]);
+    }
     let key = match &scene.solids[again].shape {
         Shape::Csg { operation, operands: _ } => operation.key(),
         _ => "",
@@ -298,6 +305,19 @@ mod tests {
                 "solids.b.union: it has no operands",
                 "solids.a.union: a solid cannot be made of itself: `a` of `a`"
             ]
+        );
+    }
+
+    #[test]
+    fn a_long_circle_is_told_in_short() {
+        let names: Vec<String> = (0..100_000).map(|i| format!("s{i}")).collect();
+        let next = |i: usize| csg(Operation::Merge, &[(i + 1) % names.len()]);
+        let solids: Vec<(&str, Shape)> =
+            names.iter().enumerate().map(|(i, name)| (name.as_str(), next(i))).collect();
+        assert_eq!(
+            messages(&scene(&solids)),
+            ["solids.s0.merge: a solid cannot be made of itself: `s0` of `s1` of `s2` of `s3` of \
+              `s4` of `s5` of 99994 more of `s0`"]
         );
     }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::{SCENE, folder_with_scene, names_in, run};
 
 /// What a run that must fail says; it prints no result and leaves the folder as it was.
-fn refused(folder: &Path, arguments: &[&str], code: i32) -> String {
+pub(super) fn refused(folder: &Path, arguments: &[&str], code: i32) -> String {
     let before = names_in(folder);
     let ran = run(folder, arguments);
     assert_eq!(ran.code, Some(code), "{arguments:?}: {}", ran.messages);
@@ -18,8 +18,16 @@ fn refused(folder: &Path, arguments: &[&str], code: i32) -> String {
 
 /// What `render` and `check` say about the small scene with `old` replaced by `new`.
 fn mistake(old: &str, new: &str) -> String {
+    mistake_beside(old, new, &[])
+}
+
+/// The same with some files beside it.
+pub(super) fn mistake_beside(old: &str, new: &str, files: &[(&str, &[u8])]) -> String {
     assert_eq!(SCENE.matches(old).count(), 1, "`{old}` stands once in the scene");
     let folder = folder_with_scene();
+    for (name, bytes) in files {
+        std::fs::write(folder.path().join(name), bytes).unwrap();
+    }
     std::fs::write(folder.path().join("scene.toml"), SCENE.replace(old, new)).unwrap();
     let checked = refused(folder.path(), &["check", "scene.toml"], 2);
     let rendered = refused(folder.path(), &["render", "scene.toml", "-o", "a.png"], 2);
@@ -29,7 +37,7 @@ fn mistake(old: &str, new: &str) -> String {
     checked
 }
 
-fn assert_says(message: &str, words: &[&str]) {
+pub(super) fn assert_says(message: &str, words: &[&str]) {
     for word in words {
         assert!(message.contains(word), "`{word}` is not in: {message}");
     }

@@ -1,6 +1,7 @@
 //! Held at the faces: what a person or a script sees of the program.
 
 mod bad_input;
+mod bad_solids;
 mod cache;
 mod chart;
 mod command_line;

@@ -58,8 +58,8 @@ both = { intersection = ["rod", "tyre"] }
 
 /// Numbers that find what divides, cancels and overflows.
 const ODD: [&str; 15] = [
-    "0", "-0.0", "1", "-1", "1e-30", "-1e-30", "1e30", "1e12", "-1e12", "1e6", "1e-6", "0.5", "nan",
-    "inf", "-inf",
+    "0", "-0.0", "1", "-1", "1e-30", "-1e-30", "1e30", "1e12", "-1e12", "1e6", "1e-6", "0.5",
+    "nan", "inf", "-inf",
 ];
 
 /// Another value of a parameter, as TOML; `None` where numbers decide how long it takes alone.
@@ -72,13 +72,9 @@ fn odd(parameter: &Parameter, random: &mut Random) -> Option<String> {
         Kind::Number => Some(one().to_owned()),
         Kind::Flag => Some(["true", "false"][random.below(2)].to_owned()),
         Kind::Choice(names) => Some(format!("\"{}\"", names[random.below(names.len())])),
-        Kind::Points => Some(format!(
-            "[[{}, 0, {}], [1, {}, 0], [0, {}, 1]]",
-            one(),
-            one(),
-            one(),
-            one()
-        )),
+        Kind::Points => {
+            Some(format!("[[{}, 0, {}], [1, {}, 0], [0, {}, 1]]", one(), one(), one(), one()))
+        }
         _ => None,
     }
 }
