@@ -153,15 +153,8 @@ fn unfit(scene: &Scene, operand: usize) -> Option<(String, &'static str)> {
                             in opposite directions";
                 let message = format!(
                     "the mesh of `{name}` is not closed and cannot be an operand: see its edge from \
-                     vertex {} at [{}, {}, {}] to vertex {} at [{}, {}, {}]",
-                    a + 1,
-                    from.x,
-                    from.y,
-                    from.z,
-                    b + 1,
-                    to.x,
-                    to.y,
-                    to.z
+                     [{}, {}, {}] to [{}, {}, {}]",
+                    from.x, from.y, from.z, to.x, to.y, to.z
                 );
                 Some((message, help))
             }
@@ -380,7 +373,7 @@ mod tests {
             messages(&scene),
             [
                 "solids.cut.difference: the mesh of `open` is not closed and cannot be an operand: \
-                 see its edge from vertex 1 at [0, 0, 0] to vertex 3 at [0, 1, 0]",
+                 see its edge from [0, 0, 0] to [0, 1, 0]",
                 "solids.cut.difference: the polygon `sheet` has no inside to be an operand"
             ]
         );

@@ -284,7 +284,16 @@ fn sized(width: u64, height: u64) -> Result<(), String> {
     if width * height == 0 { Err("it has no texels".to_owned()) } else { Ok(()) }
 }
 
+/// Whether a JPEG file has an end behind its last scan: the decoder fills up with grey what was cut off.
+fn has_end(bytes: &[u8]) -> bool {
+    let last = |marker: [u8; 2]| bytes.windows(2).rposition(|pair| pair == marker);
+    last([0xff, 0xda]).is_none_or(|scan| last([0xff, 0xd9]).is_some_and(|end| end > scan))
+}
+
 fn jpeg(bytes: &[u8]) -> Result<Image, String> {
+    if !has_end(bytes) {
+        return Err("the file was cut off".to_owned());
+    }
     // Without SIMD: its rounding must be the same on every CPU.
     let options = DecoderOptions::new_safe().jpeg_set_out_colorspace(ColorSpace::RGB);
     let side = MAX_IMAGE_SIDE as usize;

@@ -64,7 +64,7 @@ fn an_open_mesh_among_operands_is_refused_with_its_edge() {
         &[
             "scene.toml:25:",
             "the mesh of `ball` is not closed",
-            "see its edge from vertex 1 at [0, 0, 0] to vertex 3 at [0, 1, 0]",
+            "see its edge from [0, 0, 0] to [0, 1, 0]",
             "help: close the mesh",
         ],
     );
