@@ -166,11 +166,22 @@ fn a_million_coincident_triangles_are_rendered_within_two_gigabytes() {
     let faces = "f 1 2 3\n".repeat(1_000_000);
     let mesh = format!("v -2 0 -1\nv 2 0 -1\nv 0 0 2\n{faces}");
     std::fs::write(folder.path().join("same.obj"), mesh).unwrap();
-    let arguments = ["render", "scene.toml", "-o", "a.png", "--threads", "2", "--memory", "0.25"];
+    let arguments = [
+        "render",
+        "scene.toml",
+        "-o",
+        "a.png",
+        "--threads",
+        "2",
+        "--memory",
+        "0.25",
+        "--size",
+        "16x9",
+    ];
     let ran = limited(folder.path(), &arguments);
     let messages = String::from_utf8_lossy(&ran.stderr);
     assert_eq!(ran.status.code(), Some(0), "{messages}");
     let (size, _, bytes) = decode_png(&folder.path().join("a.png")).unwrap();
-    assert_eq!(size, [48, 27]);
+    assert_eq!(size, [16, 9]);
     assert!(bytes.chunks(3).any(|pixel| pixel != &bytes[..3]), "the triangles are seen");
 }
