@@ -99,7 +99,12 @@ pub struct PartError {
 
 impl fmt::Display for PartError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.file.display(), self.cause)
+        let file = self.file.display();
+        write!(
+            f,
+            "{file}: {}\n  help: give every part of one picture, each as it was written",
+            self.cause
+        )
     }
 }
 

@@ -18,7 +18,7 @@ use crate::scene::{Placement, Scene};
 
 /// Boxes around leaves are larger by this share of their coordinates: more than all roundings of
 /// crossings and of tests against them.
-const MARGIN: f64 = 1e-9;
+pub(crate) const MARGIN: f64 = 1e-9;
 
 /// A plain solid of a composite.
 #[derive(Debug)]

@@ -16,19 +16,27 @@ fn the_selected_solid_is_measured() {
     let mut window = weighing();
     window.click("ball");
     window.type_into("wanted mass error", "0.001");
-    window.type_into("density", "2");
     window.click("Measure ball");
     window.until_text("volume by formula");
     window.until_text("4.18879020");
     let texts = window.texts();
     let at = texts.iter().position(|text| text == "mass").expect("a line for the mass");
     let mass: f64 = texts[at + 1].split(" ±").next().unwrap().parse().unwrap();
-    assert!((mass - 2.0 * 4.188_790_2).abs() < 0.01, "{mass}");
+    assert!((mass - 4.188_790_2).abs() < 0.01, "{mass}");
+    assert_eq!(texts[at - 2..at], ["density of mirror", "1"]);
     // The figures stay, and say that they are old, once the solid is another.
     window.type_into("radius value", "1.5");
     window.until_text("ball, before its latest change");
     window.click("Measure ball");
     window.until_text("14.13716694");
+    // So they are once its material is denser, which no picture shows.
+    window.click("mirror");
+    window.type_into("density value", "2");
+    window.until_text("ball, before its latest change");
+    window.click("ball");
+    window.click("Measure ball");
+    window.until_text("density of mirror");
+    window.until_text("28.2");
     window.click("Close mass");
     assert!(!window.shows("Close mass"));
 }
