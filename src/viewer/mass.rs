@@ -305,3 +305,23 @@ impl App {
         self.mass.open = !close;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::Document;
+
+    #[test]
+    fn figures_are_old_once_a_solid_weighs_otherwise() {
+        let old = Document::built_in().scene().clone();
+        let after = |change: &dyn Fn(&mut Scene)| {
+            let mut new = old.clone();
+            change(&mut new);
+            weighs_like(&new, &old)
+        };
+        assert!(after(&|_| {}));
+        assert!(after(&|scene| scene.materials[0].shininess = 7.0));
+        assert!(!after(&|scene| scene.materials[0].density = 7.0));
+        assert!(!after(&|scene| scene.solids[1].placement.scale.x = 7.0));
+    }
+}
