@@ -127,7 +127,7 @@ pub(crate) fn lines(signed: &mut dyn FnMut() -> f64) -> Vec<Category> {
             let through = (1.0 + near(dyadic(0.25)), near(dyadic(0.25)));
             cases.push(meridian(minor, through, (dyadic(1.0), dyadic(1.0) + 1.5), 4.0));
         }
-        all.push(Category { name: format!("minor radius {minor}"), cases: cases });
+        all.push(Category { name: format!("minor radius {minor}"), cases });
     }
     for exponent in [6, 10, 14, 20] {
         let far = 2f64.powi(exponent);
@@ -136,7 +136,7 @@ pub(crate) fn lines(signed: &mut dyn FnMut() -> f64) -> Vec<Category> {
             cases.push(level(0.3, dyadic(1.0), dyadic(0.25), far));
             cases.push(meridian(0.3, (1.0 + dyadic(0.25), dyadic(0.25)), (dyadic(1.0), 0.75), far));
         }
-        all.push(Category { name: format!("from 2^{exponent}"), cases: cases });
+        all.push(Category { name: format!("from 2^{exponent}"), cases });
     }
     let mut cases = vec![];
     for minor in [1.0, 1.25, 1.5, 4.0] {
@@ -145,7 +145,7 @@ pub(crate) fn lines(signed: &mut dyn FnMut() -> f64) -> Vec<Category> {
             cases.push(level(minor, dyadic(2.0), dyadic(0.25), 4.0));
         }
     }
-    all.push(Category { name: "no hole".into(), cases: cases });
+    all.push(Category { name: "no hole".into(), cases });
     let axis = |x: f64| meridian(0.3, (x, 0.0), (0.0, 1.0), 4.0);
     let cases = (0..300).map(|_| axis(dyadic(1.5))).collect();
     all.push(Category { name: "along the axis".into(), cases });
