@@ -23,7 +23,7 @@ pub(super) struct Reader {
     /// Whole files that stand beside it.
     pub(super) beside: &'static [(&'static str, &'static [u8])],
     /// Repairs checksums, so that what is behind them is read.
-    pub(super) seal: fn(&mut Vec<u8>),
+    pub(super) seal: fn(&mut [u8]),
     /// Whether the file was read; panics if a promise is not kept.
     pub(super) read: fn(&Path) -> bool,
     /// Broken files to try in a short run.
@@ -299,7 +299,7 @@ fn kept() -> &'static (Session, Vec<u8>) {
 
 /// Sets the length and checksum of the header as those files have them: behind 16 bytes, the length
 /// of the header and its checksum. Leaves alone what is too short.
-fn seal(bytes: &mut Vec<u8>) {
+fn seal(bytes: &mut [u8]) {
     const PREFIX: usize = 32;
     let Some(length) = bytes.get(16..24).and_then(|l| l.try_into().ok()).map(u64::from_le_bytes)
     else {
