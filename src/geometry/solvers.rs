@@ -6,7 +6,8 @@ use glam::DVec3;
 use super::primitive::Start;
 use super::torus::Torus;
 
-const EPS: f64 = f64::EPSILON;
+/// The distance from 1 to the next larger number.
+pub(crate) const EPS: f64 = f64::EPSILON;
 
 /// A way to find where a line meets a torus of major radius 1, from its minor radius and the line's
 /// origin and direction.
@@ -240,7 +241,8 @@ fn ferrari([a, b, c]: [f64; 3]) -> Roots {
     Roots::of([-1.0, 1.0].into_iter().flat_map(pair)).sorted()
 }
 
-fn ferrari_shifted(minor: f64, o: DVec3, d: DVec3) -> Roots {
+/// Ferrari's solution from the point of the line nearest to the centre.
+pub(crate) fn ferrari_shifted(minor: f64, o: DVec3, d: DVec3) -> Roots {
     let (coefficients, t0, _) = shifted(minor, o, d);
     Roots::of(ferrari(coefficients).all().iter().map(|s| s + t0))
 }
