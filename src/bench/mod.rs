@@ -4,6 +4,7 @@ mod classes;
 mod memory;
 pub mod rays;
 mod sampling;
+pub mod solvers;
 
 use std::time::Instant;
 

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::watch::watched;
 use super::{Failure, print, read_scene, say, set};
-use crate::mass::{Goal, MassError, Measured, Properties, Report, Step, Wishes, measure};
+use crate::mass::{Goal, MassError, Measured, Properties, Report, Step, Stuff, Wishes, measure};
 use crate::scene::{Scene, problem::suggestion};
 
 /// What to measure.
@@ -24,9 +24,9 @@ pub(crate) struct Weighed {
     /// Go on until the volume is known up to this share of it.
     #[arg(long, value_name = "E", default_value = "1e-4", value_parser = parse_share)]
     error: f64,
-    /// Mass per cubic unit of length.
-    #[arg(long, value_name = "D", default_value = "1", value_parser = parse_density)]
-    density: f64,
+    /// Mass per cubic unit of length, in place of that of the materials.
+    #[arg(long, value_name = "D", value_parser = parse_density)]
+    density: Option<f64>,
     /// Other rays for another number.
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
@@ -93,13 +93,20 @@ fn three(numbers: &[Measured]) -> String {
     numbers.iter().map(|x| shown(*x)).collect::<Vec<_>>().join(", ")
 }
 
+/// What it is made of, for people.
+fn materials(made_of: &[Stuff]) -> String {
+    let one = |Stuff { material, density }: &Stuff| format!("{density} ({material})");
+    made_of.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
 /// What is measured, for people.
 fn lines(name: &str, report: &Report) -> Vec<String> {
-    let Report { properties, steps: _, reached, torn, exact } = report;
+    let Report { properties, steps: _, reached, torn, made_of, exact } = report;
     let Properties { volume, mass, center, inertia, principal, axes } = properties;
     let mut lines = vec![
         format!("{name}: {} rays", report.rays()),
         format!("  volume            {}", shown(*volume)),
+        format!("  density           {}", materials(made_of)),
         format!("  mass              {}", shown(*mass)),
         format!("  centre of mass    {}", three(center)),
         format!("  inertia xx yy zz  {}", three(&inertia[..3])),
@@ -151,10 +158,13 @@ fn figures(properties: &Properties) -> Value {
 }
 
 fn row(name: &str, report: &Report) -> Value {
-    let Report { properties, steps, reached, torn, exact } = report;
+    let Report { properties, steps, reached, torn, made_of, exact } = report;
     let step = |step: &Step| json!({ "rays": step.rays, "volume": number(&step.volume) });
     let mut row = figures(properties);
+    let stuff =
+        |Stuff { material, density }: &Stuff| json!({ "material": material, "density": density });
     row["solid"] = name.into();
+    row["made_of"] = made_of.iter().map(stuff).collect();
     row["rays"] = report.rays().into();
     row["torn_rays"] = (*torn).into();
     row["reached"] = (*reached).into();

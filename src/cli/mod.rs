@@ -69,10 +69,13 @@ struct Check {
 #[derive(Debug, Args)]
 struct Bench {
     /// Scene files.
-    #[arg(required = true)]
+    #[arg(required_unless_present = "solvers")]
     scenes: Vec<PathBuf>,
     #[command(flatten)]
     common: Common,
+    /// Measure ways to meet a torus instead, without a scene: time against errors.
+    #[arg(long, conflicts_with_all = ["scenes", "window", "rays"])]
+    solvers: bool,
     /// Measure the window instead: from an edit to its picture, and what a turn of its loop costs.
     #[arg(long)]
     window: bool,
@@ -204,6 +207,11 @@ impl Bench {
         if self.rays {
             let row = bench::rays::growth(6);
             say(&bench::rays::summary(&row));
+            rows.push(row);
+        }
+        if self.solvers {
+            let row = bench::solvers::measure();
+            say(&bench::solvers::summary(&row));
             rows.push(row);
         }
         let text = serde_json::to_string_pretty(&rows).map_err(Failure::job)?;

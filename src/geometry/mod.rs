@@ -28,8 +28,10 @@ mod prism;
 mod quadratic;
 mod quadric;
 mod query;
+mod runs;
 mod shear;
 mod sky;
+pub(crate) mod solvers;
 mod spans;
 mod surfaces;
 #[cfg(test)]
@@ -58,6 +60,7 @@ use glam::DVec3;
 use crate::progress::{Cancelled, Progress};
 use crate::scene::Scene;
 use compile::{Owner, Primitives};
+pub(crate) use composite::MARGIN;
 use hierarchy::Hierarchy;
 pub use hierarchy::Stack;
 pub use parts::parts;

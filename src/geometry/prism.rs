@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::primitive::{Start, cuboid_faces};
+use super::runs::{Run, runs};
 use super::spans::{slab, start_on_surface};
 
 /// All points between two heights over a region of the plane: where an odd number of loops is around.
@@ -15,6 +16,8 @@ pub(super) struct Prism {
     heights: [f64; 2],
     /// The corners of all loops.
     corners: Box<[DVec2]>,
+    /// Runs of the loops' edges: a line asks those that it may cross.
+    runs: Box<[Run]>,
     /// Where each loop's corners end.
     ends: Box<[usize]>,
     /// Per loop whether the solid is to the right of its edges.
@@ -45,10 +48,13 @@ impl Prism {
             *end += l.len();
             Some(*end)
         };
+        let corners: Box<[DVec2]> = all().collect();
+        let ends: Box<[usize]> = loops.iter().scan(0, end).collect();
         Prism {
             heights,
-            corners: all().collect(),
-            ends: loops.iter().scan(0, end).collect(),
+            runs: runs(&corners, &ends),
+            corners,
+            ends,
             turned: (0..loops.len()).map(|index| is_turned(loops, index)).collect(),
             shares: loops.iter().flat_map(|l| shares(l)).collect(),
             bounds,
@@ -63,8 +69,9 @@ impl Prism {
 
     /// Memory beyond its own size, in bytes.
     pub(super) fn bytes(&self) -> usize {
-        let Prism { heights: _, corners, ends, turned, shares, bounds: _ } = self;
+        let Prism { heights: _, corners, runs, ends, turned, shares, bounds: _ } = self;
         size_of_val(&**corners)
+            + size_of_val(&**runs)
             + size_of_val(&**ends)
             + size_of_val(&**turned)
             + size_of_val(&**shares)
@@ -164,11 +171,16 @@ impl Prism {
         let shift = (middle - o.truncate()).dot(along) / squared;
         let p = o.truncate() + along * shift;
         let side = |corner: DVec2| along.perp_dot(corner - p);
-        let mut begin = 0;
-        for &end in &self.ends {
-            let mut from = end - 1;
+        let mut index = 0;
+        while let Some(run) = self.runs.get(index) {
+            if run.is_beside(along, p) {
+                index = run.next as usize;
+                continue;
+            }
+            index += 1;
+            let mut from = run.from as usize;
             let mut from_side = side(self.corners[from]);
-            for to in begin..end {
+            for to in run.edges() {
                 let to_side = side(self.corners[to]);
                 if (from_side > 0.0) != (to_side > 0.0) {
                     let share = from_side / (from_side - to_side);
@@ -178,7 +190,6 @@ impl Prism {
                 }
                 (from, from_side) = (to, to_side);
             }
-            begin = end;
         }
     }
 
@@ -302,4 +313,85 @@ fn is_turned(loops: &[Vec<DVec2>], index: usize) -> bool {
     let others = loops.iter().enumerate().filter(|(other, _)| *other != index);
     let around = others.filter(|(_, other)| is_around(other, middle)).count();
     (area < 0.0) != (around % 2 == 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::testing::Random;
+
+    /// A star of many corners around a hole of many.
+    fn star(corners: usize) -> Prism {
+        let mut random = Random(corners as u64);
+        let mut ring = |low: f64, count: usize| -> Vec<DVec2> {
+            let angle = |k: usize| std::f64::consts::TAU * k as f64 / count as f64;
+            (0..count)
+                .map(|k| DVec2::from_angle(angle(k)) * (low + 0.2 + 0.2 * random.signed()))
+                .map(|corner| (corner * 64.0).round() / 64.0)
+                .collect()
+        };
+        Prism::new(&[ring(0.6, corners), ring(0.1, corners / 2)], [-0.3, 0.4])
+    }
+
+    /// The same prism, all edges of which are asked.
+    fn plain(prism: &Prism) -> Prism {
+        Prism { runs: Run::all(&prism.ends), ..prism.clone() }
+    }
+
+    fn bits(prism: &Prism, o: DVec3, d: DVec3) -> (Vec<u64>, Vec<[u64; 6]>) {
+        let mut all = Vec::new();
+        prism.crossings(o, d, Start::Elsewhere, &mut all);
+        let met = |t: &f64| {
+            let (p, n) = prism.surface(o, d, *t);
+            [p.x, p.y, p.z, n.x, n.y, n.z].map(f64::to_bits)
+        };
+        (all.iter().map(|t| t.to_bits()).collect(), all.iter().map(met).collect())
+    }
+
+    #[test]
+    fn runs_of_edges_change_no_bit() {
+        let mut random = Random(3);
+        let (mut hits, mut odd) = (0, 0);
+        for corners in [3, 7, 8, 9, 40, 144, 1000] {
+            let prism = star(corners.max(6));
+            let plain = plain(&prism);
+            for case in 0..3000 {
+                let corner = |r: &mut Random| {
+                    let index = (r.signed().abs() * prism.corners.len() as f64) as usize;
+                    prism.corners[index.min(prism.corners.len() - 1)]
+                };
+                // Through two corners, along an axis through a corner, or anywhere; from far too.
+                let a = corner(&mut random);
+                let (through, along) = match case % 4 {
+                    0 => (a, corner(&mut random) - a),
+                    1 => (a, if case % 8 == 1 { DVec2::X } else { DVec2::NEG_Y }),
+                    _ => (random.direction().truncate(), random.direction().truncate()),
+                };
+                let d = along.extend(random.signed() * 0.3 * f64::from(u8::from(case % 3 > 0)));
+                let back = 4f64.powi(case % 13);
+                let o = through.extend(random.signed() * 0.4) - d * back;
+                let found = bits(&prism, o, d);
+                assert_eq!(found, bits(&plain, o, d), "{corners} corners, from {o} along {d}");
+                hits += found.0.len();
+                odd += found.0.len() % 2;
+            }
+        }
+        assert!(hits > 20_000 && odd == 0, "{hits} crossings, {odd} odd lists");
+    }
+
+    #[test]
+    fn a_run_that_is_left_out_is_noticed() {
+        let prism = star(144);
+        let mut broken = prism.clone();
+        // Every edge of the first half is far away.
+        broken.runs[1].next = broken.runs[0].next;
+        broken.runs[1].hide();
+        let mut random = Random(5);
+        let differs = (0..300).any(|_| {
+            let (o, d) = (random.direction() * 3.0, random.direction());
+            let d = (random.direction() * 0.5 - o + d * 0.0).normalize();
+            bits(&prism, o, d) != bits(&broken, o, d)
+        });
+        assert!(differs);
+    }
 }

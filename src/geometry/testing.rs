@@ -69,6 +69,7 @@ pub(super) fn scene(solids: Vec<Solid>) -> Scene {
         fresnel: false,
         gloss: 0.0,
         translucency: 0.0,
+        density: 1.0,
     };
     let checker = Paint::Checker { a: Rgb::WHITE, b: Rgb::BLACK, size: 1.0 };
     Scene {

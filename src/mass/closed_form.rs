@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
 
-use super::moments::{COUNT, Estimate, Moments, second};
+use super::moments::{COUNT, Estimate, Moments, VOLUME, dense, second};
 use crate::scene::Shape;
 
 /// A solid by formulas, in object space.
@@ -29,9 +29,9 @@ impl Formula {
     }
 }
 
-/// The exact moments of a shape scaled along its axes, about `about` in that scaled space; `None` of a
-/// shape without a formula here. Their covariance is zero.
-pub(super) fn moments(shape: &Shape, scale: DVec3, about: DVec3) -> Option<Estimate> {
+/// The exact moments of a shape of this density scaled along its axes, about `about` in that scaled
+/// space; `None` of a shape without a formula here. Their covariance is zero.
+pub(super) fn moments(shape: &Shape, density: f64, scale: DVec3, about: DVec3) -> Option<Estimate> {
     let Formula { volume, center, spread } = formula(shape)?;
     let volume = volume * scale.x * scale.y * scale.z;
     let center = center * scale - about;
@@ -39,13 +39,14 @@ pub(super) fn moments(shape: &Shape, scale: DVec3, about: DVec3) -> Option<Estim
     let spread = stretch * spread * stretch;
     let mut mean: Moments = [0.0; COUNT];
     mean[0] = volume;
+    mean[VOLUME] = volume;
     for a in 0..3 {
         mean[1 + a] = volume * center[a];
         for b in [a, (a + 1) % 3] {
             mean[second(a, b)] = volume * (center[a] * center[b] + spread.col(a)[b]);
         }
     }
-    Some(Estimate { mean, ..Estimate::ZERO })
+    Some(Estimate { mean: dense(mean, density), ..Estimate::ZERO })
 }
 
 fn formula(shape: &Shape) -> Option<Formula> {

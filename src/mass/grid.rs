@@ -4,16 +4,23 @@ use fearless_simd::{Level, Simd, dispatch};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::moments::{COUNT, Estimate, Moments, of_interval};
+use super::moments::{COUNT, Estimate, Moments, dense, of_interval};
 use crate::geometry::{Geometry, Hit, Ray, Stack};
 use crate::progress::{Cancelled, Progress};
 
 /// A ray that meets an edge so that the crossings do not add up is cast anew this many times.
 const MOST_TRIES: u64 = 8;
 
+/// A region of one density.
+pub(super) struct Region {
+    pub(super) geometry: Geometry,
+    pub(super) density: f64,
+}
+
 /// The solid, alone, with the middle of its box at the origin.
 pub(super) struct Grid<'a> {
-    pub(super) geometry: &'a Geometry,
+    /// That do not overlap, and are all of it.
+    pub(super) regions: &'a [Region],
     /// Half the sides of the box.
     pub(super) half: DVec3,
     /// Other rays for another one.
@@ -30,12 +37,18 @@ pub(super) struct Found {
 
 /// What a thread needs.
 struct Scratch {
-    stack: Stack,
+    /// Per region.
+    stacks: Vec<Stack>,
     /// `t` and primitive of each.
     hits: Vec<(f64, u32)>,
 }
 
 impl Grid<'_> {
+    fn scratch(&self) -> Scratch {
+        let stacks = self.regions.iter().map(|region| Stack::new(&region.geometry)).collect();
+        Scratch { stacks, hits: Vec::new() }
+    }
+
     /// Casts `2·n²` rays along every axis, two in every cell of a grid of n by n.
     ///
     /// Rows of cells are summed by themselves and then in their order: the bits do not depend on the
@@ -45,7 +58,7 @@ impl Grid<'_> {
         let rows: Result<Vec<Found>, Cancelled> = (0..3 * n)
             .into_par_iter()
             .map_init(
-                || Scratch { stack: Stack::new(self.geometry), hits: Vec::new() },
+                || self.scratch(),
                 |scratch, row| {
                     progress.check()?;
                     let (axis, row) = ((row / n) as usize, row % n);
@@ -110,7 +123,7 @@ impl Grid<'_> {
         axis: usize,
         across: [f64; 2],
     ) -> Option<Moments> {
-        let Scratch { stack, hits } = scratch;
+        let Scratch { stacks, hits } = scratch;
         let mut origin = DVec3::ZERO;
         origin[(axis + 1) % 3] = across[0];
         origin[(axis + 2) % 3] = across[1];
@@ -120,31 +133,37 @@ impl Grid<'_> {
         let mut direction = DVec3::ZERO;
         direction[axis] = 1.0;
         let ray = Ray { origin, direction };
-        self.geometry.all_hits(simd, stack, &ray, hits);
         let mut sum = [0.0; COUNT];
-        // Solids may overlap, as the balls of a flake do: the ray is inside while it has entered more
-        // often than it has left.
-        let (mut depth, mut entered) = (0, 0.0);
-        for &(t, primitive) in &*hits {
-            let hit = Hit { t, primitive };
-            let normal = self.geometry.interaction(stack, &ray, hit).geometric_normal;
-            if normal[axis] < 0.0 {
-                if depth == 0 {
-                    entered = t;
+        for (Region { geometry, density }, stack) in self.regions.iter().zip(stacks) {
+            geometry.all_hits(simd, stack, &ray, hits);
+            // Solids may overlap, as the balls of a flake do: the ray is inside while it has entered
+            // more often than it has left.
+            let (mut depth, mut entered) = (0, 0.0);
+            for &(t, primitive) in &*hits {
+                let hit = Hit { t, primitive };
+                let normal = geometry.interaction(stack, &ray, hit).geometric_normal;
+                if normal[axis] < 0.0 {
+                    if depth == 0 {
+                        entered = t;
+                    }
+                    depth += 1;
+                } else {
+                    depth -= 1;
+                    if depth == 0 {
+                        let part = of_interval(axis, across, start + entered, start + t);
+                        let part = dense(part, *density);
+                        sum.iter_mut().zip(part).for_each(|(sum, x)| *sum += x);
+                    }
                 }
-                depth += 1;
-            } else {
-                depth -= 1;
-                if depth == 0 {
-                    let part = of_interval(axis, across, start + entered, start + t);
-                    sum.iter_mut().zip(part).for_each(|(sum, x)| *sum += x);
+                if depth < 0 {
+                    return None;
                 }
             }
-            if depth < 0 {
+            if depth != 0 {
                 return None;
             }
         }
-        (depth == 0).then_some(sum)
+        Some(sum)
     }
 
     /// Two numbers in (0, 1) for a ray.

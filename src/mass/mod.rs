@@ -3,13 +3,15 @@
 //! A solid is looked at alone, unturned, with the middle of its box at the origin. Jittered grids of
 //! rays along the three axes find where it is; moments up to the second are integrated exactly along
 //! each ray. Every cell of a grid gets two independent rays, and how much they differ states the error.
-//! Plain primitives have their closed form beside it.
+//! Plain primitives have their closed form beside it. What is made of several materials is a region of
+//! each (see [`regions`]).
 
 mod closed_form;
 mod eigen;
 mod grid;
 mod moments;
 mod properties;
+mod regions;
 #[cfg(test)]
 mod tests;
 
@@ -17,15 +19,16 @@ use std::fmt;
 
 use glam::DVec3;
 
-use crate::geometry::{Geometry, rotation};
+use crate::geometry::{Geometry, MARGIN, rotation};
 use crate::progress::{Cancelled, Progress};
-use crate::scene::motion::Motion;
 use crate::scene::seams::Seams;
 use crate::scene::{Placement, Scene, Shape, Solid};
-use grid::{Found, Grid};
+use grid::{Found, Grid, Region};
 use properties::Frame;
 pub use properties::{Measured, Properties};
 
+/// Rounding of sums, relative to what is summed.
+const ROUNDING: f64 = 1e-12;
 /// Cells along an axis of the first grid.
 const FIRST: u32 = 8;
 /// Most cells along an axis: 6·4096² are 10⁸ rays.
@@ -45,15 +48,15 @@ pub enum Goal {
 pub struct Wishes {
     /// When to stop.
     pub goal: Goal,
-    /// Mass per cubic world unit, > 0.
-    pub density: f64,
+    /// Mass per cubic world unit, > 0, in place of that of the materials.
+    pub density: Option<f64>,
     /// Other rays for another one.
     pub seed: u64,
 }
 
 impl Default for Wishes {
     fn default() -> Wishes {
-        Wishes { goal: Goal::Error(1e-4), density: 1.0, seed: 0 }
+        Wishes { goal: Goal::Error(1e-4), density: None, seed: 0 }
     }
 }
 
@@ -75,10 +78,21 @@ pub struct Report {
     pub steps: Vec<Step>,
     /// Whether the error that was wanted is reached; true of a number of rays.
     pub reached: bool,
+    /// The materials that it is made of, in the order of its parts.
+    pub made_of: Vec<Stuff>,
     /// Rays of the last grid whose crossings did not add up.
     pub torn: u64,
     /// By formulas, if there are any for this shape.
     pub exact: Option<Properties>,
+}
+
+/// A material as far as it matters here.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stuff {
+    /// Its name.
+    pub material: String,
+    /// What it was taken to weigh per cubic world unit.
+    pub density: f64,
 }
 
 impl Report {
@@ -141,14 +155,15 @@ pub fn measure(
     let placement = &scene.solids[solid].placement;
     let turn = rotation(placement.rotate_degrees);
     let translation = turn * middle + placement.translate;
-    let frame = Frame { rotation: turn, translation, half };
-    let geometry = Geometry::build(&alone, progress)?;
-    let grid = Grid { geometry: &geometry, half, seed };
+    let rounding = rounding(&scene.solids[solid].shape, half);
+    let frame = Frame { rotation: turn, translation, half, rounding };
+    let (regions, made_of) = regions::regions(alone, density, progress)?;
+    let grid = Grid { regions: &regions, half, seed };
     let (mut steps, mut n) = (Vec::new(), first(goal));
     loop {
         let Found { estimate, torn } = grid.cast(n, progress)?;
         let rays = 6 * u64::from(n).pow(2);
-        let found = properties::properties(&estimate, &frame, density);
+        let found = properties::properties(&estimate, &frame);
         let volume = found.as_ref().map_or(Measured::default(), |found| found.volume);
         let step = Step { rays, volume };
         news(&step);
@@ -159,12 +174,26 @@ pub fn measure(
         };
         if done || n >= MOST {
             let properties = found.ok_or(MassError::Empty)?;
-            let exact = closed_form::moments(&scene.solids[solid].shape, placement.scale, middle);
-            let exact = exact.and_then(|exact| properties::properties(&exact, &frame, density));
-            return Ok(Report { properties, steps, reached: done, torn, exact });
+            let exact = exact(&scene.solids[solid], &regions, &frame, middle);
+            return Ok(Report { properties, steps, reached: done, torn, made_of, exact });
         }
         n *= 2;
     }
+}
+
+/// What rounding makes of sums, relative to what is summed. Boxes around what is made of others are a
+/// little too large, and no ray may come where they are.
+fn rounding(shape: &Shape, half: DVec3) -> f64 {
+    let slack = 4.0 * half.max_element() / half.min_element();
+    if shape.is_composite() { ROUNDING + slack * MARGIN } else { ROUNDING }
+}
+
+/// By formulas, of a plain solid.
+fn exact(solid: &Solid, regions: &[Region], frame: &Frame, middle: DVec3) -> Option<Properties> {
+    let [Region { geometry: _, density }] = regions else { return None };
+    let scale = solid.placement.scale;
+    let moments = closed_form::moments(&solid.shape, *density, scale, middle)?;
+    properties::properties(&moments, frame)
 }
 
 /// Cells along an axis of the first grid.
@@ -208,7 +237,7 @@ fn centred(
 ) -> Result<(Scene, DVec3, DVec3), MassError> {
     let mut alone = Scene {
         materials: scene.materials.clone(),
-        solids: with_operands(scene, solid),
+        solids: regions::with_operands(scene, solid),
         ..Scene::default()
     };
     let placement = &mut alone.solids[0].placement;
@@ -223,29 +252,4 @@ fn centred(
     // Rounding may leave the box a little beside the origin.
     let half = low.abs().max(high.abs());
     if half.min_element() > 0.0 { Ok((alone, middle, half)) } else { Err(MassError::Empty) }
-}
-
-/// A solid and all that it is made of, at rest; it comes first.
-fn with_operands(scene: &Scene, solid: usize) -> Vec<Solid> {
-    let mut needed = vec![solid];
-    let mut place = vec![None; scene.solids.len()];
-    place[solid] = Some(0);
-    let mut next = 0;
-    while let Some(&index) = needed.get(next) {
-        next += 1;
-        for &operand in scene.solids[index].shape.operands() {
-            place[operand].get_or_insert_with(|| {
-                needed.push(operand);
-                needed.len() - 1
-            });
-        }
-    }
-    let at_rest = |index: usize| {
-        let mut own = Solid { motion: Motion::default(), ..scene.solids[index].clone() };
-        if let Shape::Csg { operation: _, operands } = &mut own.shape {
-            operands.iter_mut().for_each(|operand| *operand = place[*operand].unwrap_or(0));
-        }
-        own
-    };
-    needed.into_iter().map(at_rest).collect()
 }

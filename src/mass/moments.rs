@@ -1,9 +1,13 @@
-//! Sums of moments over jittered rays, with their covariance from pairs of rays.
+//! Sums of moments of mass, and of volume, over jittered rays, with their covariance from pairs of rays.
 
 use std::ops::AddAssign;
 
-/// How many moments there are: ∫1, ∫x, ∫y, ∫z, ∫xx, ∫yy, ∫zz, ∫yz, ∫zx, ∫xy over a solid.
-pub(super) const COUNT: usize = 10;
+/// How many moments there are: ∫ρ, ∫ρx, ∫ρy, ∫ρz, ∫ρxx, ∫ρyy, ∫ρzz, ∫ρyz, ∫ρzx, ∫ρxy and ∫1 over a
+/// solid of density ρ.
+pub(super) const COUNT: usize = 11;
+
+/// Where the volume stands.
+pub(super) const VOLUME: usize = 10;
 
 /// One number per moment, in this order.
 pub(super) type Moments = [f64; COUNT];
@@ -13,8 +17,9 @@ pub(super) const fn second(a: usize, b: usize) -> usize {
     if a == b { 4 + a } else { 10 - a - b }
 }
 
-/// The moments of the part of a line parallel to `axis` between two coordinates; `across` holds the
-/// two other coordinates, of the axes `axis + 1` and `axis + 2`. Exact but for rounding.
+/// The moments of the part of a line parallel to `axis` between two coordinates, for a density of 1;
+/// `across` holds the two other coordinates, of the axes `axis + 1` and `axis + 2`. Exact but for
+/// rounding.
 pub(super) fn of_interval(axis: usize, across: [f64; 2], from: f64, to: f64) -> Moments {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     let [y, z] = across;
@@ -23,6 +28,7 @@ pub(super) fn of_interval(axis: usize, across: [f64; 2], from: f64, to: f64) -> 
     let first = length * middle;
     let mut m = [0.0; COUNT];
     m[0] = length;
+    m[VOLUME] = length;
     m[1 + axis] = first;
     m[1 + u] = length * y;
     m[1 + v] = length * z;
@@ -34,6 +40,14 @@ pub(super) fn of_interval(axis: usize, across: [f64; 2], from: f64, to: f64) -> 
     m[second(axis, v)] = first * z;
     m[second(u, v)] = length * y * z;
     m
+}
+
+/// The same with another density.
+pub(super) fn dense(moments: Moments, density: f64) -> Moments {
+    let volume = moments[VOLUME];
+    let mut moments = moments.map(|x| density * x);
+    moments[VOLUME] = volume;
+    moments
 }
 
 /// Moments estimated with their covariance.
@@ -107,6 +121,7 @@ mod tests {
         // Along y from 1 to 3, at z = 5, x = 7.
         let m = of_interval(1, [5.0, 7.0], 1.0, 3.0);
         assert_eq!(m[..4], [2.0, 14.0, 4.0, 10.0]);
+        assert_eq!(m[VOLUME], 2.0);
         assert_eq!([m[second(0, 0)], m[second(2, 2)]], [98.0, 50.0]);
         assert!((m[second(1, 1)] - 26.0 / 3.0).abs() < 1e-14);
         assert_eq!([m[second(1, 2)], m[second(2, 0)], m[second(0, 1)]], [20.0, 70.0, 28.0]);

@@ -3,13 +3,10 @@
 use glam::{DMat3, DVec3};
 
 use super::eigen::eigen;
-use super::moments::{COUNT, Estimate, Moments, second};
+use super::moments::{COUNT, Estimate, Moments, VOLUME, second};
 
 /// Standard deviations of the stated error: 99 % of normally distributed errors are below.
 const CONFIDENCE: f64 = 2.576;
-/// Rounding of sums, relative to what is summed.
-const ROUNDING: f64 = 1e-12;
-
 /// A number and what it may be wrong by, with a confidence of 99 %.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measured {
@@ -24,7 +21,7 @@ pub struct Measured {
 pub struct Properties {
     /// Cubic world units.
     pub volume: Measured,
-    /// Volume times density.
+    /// The integral of the density over it.
     pub mass: Measured,
     /// World space.
     pub center: [Measured; 3],
@@ -44,6 +41,8 @@ pub(super) struct Frame {
     pub(super) translation: DVec3,
     /// Half of the sides of the box around the solid, which is about the origin.
     pub(super) half: DVec3,
+    /// What rounding makes of sums, relative to what is summed.
+    pub(super) rounding: f64,
 }
 
 /// A number that is linear in the moments, near where they are.
@@ -80,26 +79,27 @@ impl Linear {
         Linear { value, gradient: self.gradient.map(|g| -g * value * value) }
     }
 
-    /// With its error; `size` is that of what was summed to it.
-    fn measured(self, estimate: &Estimate, size: f64) -> Measured {
-        let error = CONFIDENCE * estimate.variance(&self.gradient).sqrt() + ROUNDING * size;
+    /// With its error; that of `rounding` is part of it.
+    fn measured(self, estimate: &Estimate, rounding: f64) -> Measured {
+        let error = CONFIDENCE * estimate.variance(&self.gradient).sqrt() + rounding;
         Measured { value: self.value, error }
     }
 }
 
-/// The properties of a solid of this density from the moments about its frame's origin; `None` if it
-/// has no volume.
-pub(super) fn properties(estimate: &Estimate, frame: &Frame, density: f64) -> Option<Properties> {
-    let Frame { rotation, translation, half } = *frame;
+/// The properties of a solid from the moments about its frame's origin; `None` if it has no volume.
+pub(super) fn properties(estimate: &Estimate, frame: &Frame) -> Option<Properties> {
+    let Frame { rotation, translation, half, rounding } = *frame;
     let mean = &estimate.mean;
-    let volume = Linear::moment(mean, 0);
-    if volume.value <= 0.0 || volume.value.is_nan() {
+    let (mass, volume) = (Linear::moment(mean, 0), Linear::moment(mean, VOLUME));
+    let is_positive = |x: Linear| x.value > 0.0;
+    if !is_positive(volume) || !is_positive(mass) {
         return None;
     }
-    let per_volume = volume.inverse();
+    let per_mass = mass.inverse();
     let own: [Linear; 3] =
-        std::array::from_fn(|axis| Linear::moment(mean, 1 + axis).times(per_volume));
-    let (reach, size) = (half.length(), volume.value * half.length_squared() * density);
+        std::array::from_fn(|axis| Linear::moment(mean, 1 + axis).times(per_mass));
+    let reach = rounding * half.length();
+    let size = rounding * mass.value * half.length_squared();
     let center = std::array::from_fn(|axis| {
         let turned = (0..3).fold(Linear::ZERO, |sum, k| sum.plus(rotation.row(axis)[k], own[k]));
         let mut center = turned.measured(estimate, reach);
@@ -107,17 +107,16 @@ pub(super) fn properties(estimate: &Estimate, frame: &Frame, density: f64) -> Op
         center.error += f64::EPSILON * translation[axis].abs();
         center
     });
-    let tensor = inertia(mean, &own, rotation, density);
+    let tensor = inertia(mean, &own, rotation);
     let measured = |a: usize, b: usize| tensor[a][b].measured(estimate, size);
     let matrix = DMat3::from_cols_array_2d(&tensor.map(|row| row.map(|x| x.value)));
     let (values, axes) = eigen(matrix);
     // No principal moment moves by more than the tensor does (Weyl).
     let variance = tensor.iter().flatten().map(|x| estimate.variance(&x.gradient)).sum::<f64>();
-    let error = CONFIDENCE * variance.sqrt() + ROUNDING * size;
-    let mass = Linear::ZERO.plus(density, volume);
+    let error = CONFIDENCE * variance.sqrt() + size;
     Some(Properties {
-        volume: volume.measured(estimate, volume.value),
-        mass: mass.measured(estimate, mass.value),
+        volume: volume.measured(estimate, rounding * volume.value),
+        mass: mass.measured(estimate, rounding * mass.value),
         center,
         inertia: [(0, 0), (1, 1), (2, 2), (1, 2), (2, 0), (0, 1)].map(|(a, b)| measured(a, b)),
         principal: values.to_array().map(|value| Measured { value, error }),
@@ -126,7 +125,7 @@ pub(super) fn properties(estimate: &Estimate, frame: &Frame, density: f64) -> Op
 }
 
 /// The inertia tensor about the centre of mass, along the world's axes.
-fn inertia(mean: &Moments, own: &[Linear; 3], rotation: DMat3, density: f64) -> [[Linear; 3]; 3] {
+fn inertia(mean: &Moments, own: &[Linear; 3], rotation: DMat3) -> [[Linear; 3]; 3] {
     // Second moments about the centre of mass.
     let central = |a: usize, b: usize| {
         let shift = own[a].times(own[b]).times(Linear::moment(mean, 0));
@@ -136,7 +135,7 @@ fn inertia(mean: &Moments, own: &[Linear; 3], rotation: DMat3, density: f64) -> 
     let own_tensor: [[Linear; 3]; 3] = std::array::from_fn(|a| {
         std::array::from_fn(|b| {
             let diagonal = if a == b { trace } else { Linear::ZERO };
-            Linear::ZERO.plus(density, diagonal.plus(-1.0, central(a.min(b), a.max(b))))
+            diagonal.plus(-1.0, central(a.min(b), a.max(b)))
         })
     });
     std::array::from_fn(|a| {

@@ -92,7 +92,7 @@ fn plain_primitives_agree_with_their_closed_forms() {
         scene.solids[0].placement.scale = DVec3::new(1.0, 2.0, 0.5);
         scene.solids[0].placement.rotate_degrees = DVec3::new(20.0, 50.0, -70.0);
         scene.solids[0].placement.translate = DVec3::new(3.0, -4.0, 5.0);
-        let report = measured(&scene, Wishes { density: 2.5, ..rays(60_000, 1) });
+        let report = measured(&scene, Wishes { density: Some(2.5), ..rays(60_000, 1) });
         let exact = report.exact.expect("a formula");
         for (found, truth) in pairs(&report.properties, &exact) {
             assert!(covers(found, truth), "{found:?}, not {truth}");
@@ -209,8 +209,8 @@ fn threads_change_no_bit() {
     assert_ne!(bits(&one), bits(&measured(&scene, rays(20_000, 8))), "another seed, other rays");
 }
 
-/// A tetrahedron at random, with its volume and centre.
-fn tetrahedron(state: &mut u64) -> (Shape, f64, DVec3) {
+/// A tetrahedron at random.
+fn tetrahedron(state: &mut u64) -> [DVec3; 4] {
     loop {
         let mut point = || DVec3::new(random(state), random(state), random(state)) * 2.0;
         let mut p = [point(), point(), point(), point()];
@@ -219,10 +219,30 @@ fn tetrahedron(state: &mut u64) -> (Shape, f64, DVec3) {
             p.swap(2, 3);
         }
         if six.abs() > 0.3 {
-            let middle = (p[0] + p[1] + p[2] + p[3]) / 4.0;
-            let faces = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
-            return (mesh(p.to_vec(), faces), six.abs() / 6.0, middle);
+            return p;
         }
+    }
+}
+
+/// What a tetrahedron of density 1 weighs: the second moments about its centre are V/20 Σ p·pᵀ.
+fn weight_of(p: [DVec3; 4]) -> Properties {
+    let volume = (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]).abs() / 6.0;
+    let center = p.into_iter().sum::<DVec3>() / 4.0;
+    let out = p.map(|p| p - center);
+    let second = |a: usize, b: usize| volume / 20.0 * out.iter().map(|p| p[a] * p[b]).sum::<f64>();
+    let trace: f64 = (0..3).map(|a| second(a, a)).sum();
+    let inertia = |a, b| if a == b { trace - second(a, b) } else { -second(a, b) };
+    let rows = [0, 1, 2].map(|a| [0, 1, 2].map(|b| inertia(a, b)));
+    let (principal, axes) = eigen::eigen(DMat3::from_cols_array_2d(&rows));
+    let exact = |value: f64| Measured { value, error: 0.0 };
+    Properties {
+        volume: exact(volume),
+        mass: exact(volume),
+        center: center.to_array().map(exact),
+        inertia: [(0, 0), (1, 1), (2, 2), (1, 2), (2, 0), (0, 1)]
+            .map(|(a, b)| exact(inertia(a, b))),
+        principal: principal.to_array().map(exact),
+        axes: [axes.x_axis, axes.y_axis, axes.z_axis],
     }
 }
 
@@ -230,37 +250,33 @@ fn tetrahedron(state: &mut u64) -> (Shape, f64, DVec3) {
 fn the_stated_error_covers_the_truth() {
     let count = if std::env::var_os("RAYFOREST_LONG").is_some() { 1000 } else { 150 };
     let mut state = 11;
-    let (mut volumes, mut centers, mut moments) = (0, 0, 0);
+    let (mut covered, mut squares) = ([0; 14], 0.0);
     for seed in 0..count {
-        let (mut scene, volume, own_center) = if seed % 2 == 0 {
-            let (shape, volume, center) = tetrahedron(&mut state);
-            (scene(shape), volume, center)
-        } else {
-            (scene(ball()), 4.0 / 3.0 * PI, DVec3::ZERO)
-        };
+        let corners = (seed % 2 == 0).then(|| tetrahedron(&mut state));
+        let mut scene = scene(corners.map_or_else(ball, |corners| {
+            mesh(corners.to_vec(), vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+        }));
         let placement = &mut scene.solids[0].placement;
         placement.scale =
             DVec3::new(random(&mut state), random(&mut state), random(&mut state)) + 0.2;
         placement.rotate_degrees = DVec3::new(random(&mut state), random(&mut state), 0.5) * 360.0;
         placement.translate = DVec3::new(random(&mut state), 0.0, -1.0) * 100.0;
         let Placement { translate, rotate_degrees, scale } = placement.clone();
-        let volume = volume * scale.x * scale.y * scale.z;
-        let center = rotation(rotate_degrees) * (own_center * scale) + translate;
-        let report = measured(&scene, rays(6000, seed));
-        let found = &report.properties;
-        volumes += u32::from(covers(found.volume, volume));
-        centers += u32::from((0..3).all(|axis| covers(found.center[axis], center[axis])));
-        let exact = report.exact.as_ref();
-        moments += u32::from(
-            exact.is_none_or(|exact| pairs(found, exact).iter().all(|(m, t)| covers(*m, *t))),
-        );
-        // An error that covers everything would be worth nothing.
-        assert!(found.volume.error < 0.05 * volume, "{:?}", found.volume);
+        let placed = |p: DVec3| rotation(rotate_degrees) * (p * scale) + translate;
+        let Report { properties: found, exact, .. } = measured(&scene, rays(6000, seed));
+        let truth = corners.map(|corners| weight_of(corners.map(placed))).or(exact).unwrap();
+        for (count, (number, truth)) in covered.iter_mut().zip(pairs(&found, &truth)) {
+            *count += u32::from(covers(number, truth));
+        }
+        squares += ((found.volume.value - truth.volume.value) / found.volume.error).powi(2);
     }
+    println!("of {count}: volume, mass, centre, inertia, principal moments {covered:?}");
     let least = count as u32 * 95 / 100;
-    assert!(volumes >= least, "{volumes} of {count} volumes");
-    assert!(centers >= least * 98 / 100, "{centers} of {count} centres, in all three coordinates");
-    assert!(moments >= least * 98 / 100, "{moments} of {count} inertias, in all numbers");
+    assert!(covered.iter().all(|number| *number >= least), "{covered:?} of {count}");
+    // An error that covers everything would be worth nothing: the one stated is of 2.576 deviations.
+    let deviations = (squares / count as f64).sqrt() * 2.576;
+    println!("{deviations} of the stated deviation");
+    assert!((0.75..1.25).contains(&deviations), "{deviations}");
 }
 
 /// Root mean square of the relative errors of volumes with n² rays in all, over some seeds.
@@ -348,6 +364,78 @@ fn a_union_weighs_what_its_parts_do_without_what_they_share() {
     let endless = made(Operation::Complement, vec![ball()]);
     let refused = measure(&endless, 0, rays(600, 0), &Progress::default(), &mut |_| {});
     assert_eq!(refused, Err(MassError::Endless));
+}
+
+/// Mass and centre of what an operation makes of shapes that weigh 1, 10, 100 … per volume.
+fn mixed(operation: Operation, shapes: Vec<Shape>) -> (Report, Measured, [Measured; 3]) {
+    let mut scene = made(operation, shapes);
+    scene.materials = (0..4)
+        .map(|k| Material { density: 10f64.powi(k), ..Material::new(format!("m{k}")) })
+        .collect();
+    for (k, solid) in scene.solids[1..].iter_mut().enumerate() {
+        solid.material = k;
+    }
+    let report = measured(&scene, rays(300_000, 1));
+    let Properties { mass, center, .. } = report.properties.clone();
+    (report, mass, center)
+}
+
+#[test]
+fn a_solid_of_several_materials_weighs_what_its_regions_do() {
+    let cube = |x: f64, half: f64| Shape::Box {
+        min: DVec3::new(x - half, -half, -half),
+        max: DVec3::new(x + half, half, half),
+    };
+    let volume = |report: &Report| report.properties.volume;
+    // Where two overlap, the first one is there: 8 of it, and 4 of the other one beside it.
+    for operation in [Operation::Merge, Operation::Union] {
+        let (report, mass, center) = mixed(operation, vec![cube(0.0, 1.0), cube(1.0, 1.0)]);
+        assert!(covers(volume(&report), 12.0) && covers(mass, 48.0), "{operation:?}: {mass:?}");
+        // 8 at 0 and 40 at 1.5.
+        assert!(covers(center[0], 60.0 / 48.0), "{operation:?}: {center:?}");
+        let names: Vec<&str> = report.made_of.iter().map(|s| s.material.as_str()).collect();
+        assert_eq!(names, ["m0", "m1"]);
+        let (_, mass, _) = mixed(operation, vec![cube(1.0, 1.0), cube(0.0, 1.0)]);
+        assert!(covers(mass, 48.0));
+    }
+    // What is cut out weighs nothing, and of a common part the first operand tells the material.
+    let (report, mass, _) = mixed(Operation::Difference, vec![cube(0.0, 1.0), cube(1.0, 1.0)]);
+    assert!(covers(mass, 4.0) && report.made_of.len() == 1);
+    let (_, mass, _) = mixed(Operation::Intersection, vec![cube(0.0, 1.0), cube(1.0, 1.0)]);
+    assert!(covers(mass, 4.0));
+    // Of three, the third is there only where neither of the others is.
+    let three = vec![cube(0.0, 1.0), cube(1.0, 1.0), cube(0.0, 1.5)];
+    let (report, mass, _) = mixed(Operation::Merge, three);
+    // Of the second one, half a unit looks out of the third.
+    let third = 27.0 - 8.0 - 2.0;
+    assert!(covers(volume(&report), 8.0 + 4.0 + third), "{:?}", volume(&report));
+    assert!(covers(mass, 8.0 + 40.0 + 100.0 * third), "{mass:?}");
+}
+
+#[test]
+fn parts_of_parts_keep_their_places_and_materials() {
+    let at = |x: f64| Shape::Sphere { center: DVec3::X * x, radius: 1.0 };
+    // A pair of balls of 1 and 10, apart, twice as large and moved, with a plane that cuts one off.
+    let mut scene = made(Operation::Intersection, vec![Shape::named("plane"), ball()]);
+    scene.solids[1].shape = Shape::Plane { normal: DVec3::X, offset: 4.0 };
+    scene.solids[2].shape = Shape::Csg { operation: Operation::Merge, operands: vec![3, 4] };
+    scene.solids.extend([Solid::new("a", at(0.0), 0), Solid::new("b", at(3.0), 1)]);
+    scene.materials.push(Material { density: 10.0, ..Material::new("heavy") });
+    scene.solids[0].shape = Shape::Csg { operation: Operation::Intersection, operands: vec![2, 1] };
+    scene.solids[2].placement.scale = DVec3::splat(2.0);
+    scene.solids[2].placement.translate = DVec3::new(-2.0, 0.0, 0.0);
+    // Balls of radius 2 at −2 and 4: of the second, half is left.
+    let report = measured(&scene, rays(300_000, 4));
+    let one = 32.0 / 3.0 * PI;
+    let Properties { volume, mass, center, .. } = report.properties;
+    assert!(covers(volume, 1.5 * one), "{volume:?}");
+    assert!(covers(mass, one + 5.0 * one), "{mass:?}");
+    // Half a ball's centre is 3/8 of the radius from its face.
+    assert!(covers(center[0], (-2.0 + 5.0 * 3.25) / 6.0), "{center:?}");
+    // The material of the plane counts where it comes first.
+    let Shape::Csg { operands, .. } = &mut scene.solids[0].shape else { unreachable!() };
+    operands.reverse();
+    assert_eq!(measured(&scene, rays(600, 4)).made_of.len(), 1);
 }
 
 #[test]

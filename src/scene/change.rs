@@ -300,6 +300,8 @@ impl Change {
             fresnel: _,
             gloss: _,
             translucency: _,
+            // Mass is not seen.
+            density: _,
         } = old;
         self.ray(*priority != new.priority, "priority");
         self.paint(before, paint, &new.paint);
@@ -475,6 +477,7 @@ impl Material {
             fresnel: _,
             gloss,
             translucency,
+            density: _,
         } = self;
         let path = (reflect, transmit, filter, ior, priority);
         let lobes = [*gloss, *translucency];

@@ -94,6 +94,7 @@ impl Material {
             fresnel: false,
             gloss: 0.0,
             translucency: 0.0,
+            density: 1.0,
         }
     }
 }

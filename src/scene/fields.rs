@@ -28,6 +28,9 @@ pub const LENGTH: Range = Range::above(0.0, 1e12);
 /// Exponents of highlights and of the lobes that blur.
 pub const EXPONENT: Range = Range::closed(0.0, 1e6);
 
+/// Mass per cubic unit of length.
+pub const DENSITY: Range = Range::above(0.0, 1e12);
+
 /// Lengths that may be nothing.
 pub const DISTANCE: Range = Range::closed(0.0, 1e12);
 
@@ -265,6 +268,7 @@ pub fn material(material: &mut Material, v: &mut dyn Visit) {
         fresnel,
         gloss,
         translucency,
+        density,
     } = material;
     self::paint(paint, v);
     v.leaf("kloc", Need::Optional, Slot::Coefficient(kloc, COEFFICIENT));
@@ -285,6 +289,7 @@ pub fn material(material: &mut Material, v: &mut dyn Visit) {
     v.leaf("fresnel", Need::Optional, Slot::Flag(fresnel));
     v.leaf("gloss", Need::Optional, Slot::Single(gloss, EXPONENT));
     v.leaf("translucency", Need::Optional, Slot::Single(translucency, EXPONENT));
+    v.leaf("density", Need::Optional, Slot::Number(density, DENSITY));
     self::bump(bump, v);
 }
 

@@ -247,6 +247,8 @@ pub struct Material {
     pub gloss: f32,
     /// The same of the refracted ray.
     pub translucency: f32,
+    /// Mass per cubic unit of length, > 0; no part of the picture.
+    pub density: f64,
 }
 
 /// `[solids.NAME]`.

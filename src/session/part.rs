@@ -93,13 +93,21 @@ impl fmt::Display for Share {
 pub struct PartError {
     /// The file.
     pub file: PathBuf,
-    /// What is wrong, and the way out.
+    /// What is wrong, one line.
     pub cause: String,
+    /// A way out, one line.
+    pub way_out: &'static str,
 }
+
+/// What to do about a file that cannot be written.
+const WRITE: &str = "check the folder's permissions and the room on its disc";
+/// What to do about files that make no picture.
+const READ: &str = "give every part of one picture, each as it was written";
 
 impl fmt::Display for PartError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.file.display(), self.cause)
+        let PartError { file, cause, way_out } = self;
+        write!(f, "{}: {cause}\n  help: {way_out}", file.display())
     }
 }
 
@@ -198,7 +206,7 @@ pub fn write(
     path: &Path,
     progress: &Progress,
 ) -> Result<TraceReport, PartError> {
-    let fail = |cause: String| PartError { file: path.into(), cause };
+    let fail = |cause: String| PartError { file: path.into(), cause, way_out: WRITE };
     let traced = |error: TraceError| fail(format!("not written: {error}"));
     let header = Header { picture: Picture::of(still.scene), share };
     let mut file = Unfinished::begin(path).map_err(|e| fail(e.cause))?;
@@ -247,7 +255,8 @@ struct Opened {
 
 impl Opened {
     fn open(path: &Path) -> Result<Opened, PartError> {
-        let fail = |cause: &str| PartError { file: path.into(), cause: cause.into() };
+        let fail =
+            |cause: &str| PartError { file: path.into(), cause: cause.into(), way_out: READ };
         let io = |error: std::io::Error| fail(&error.to_string());
         // Asked first, because opening a pipe waits.
         if !std::fs::metadata(path).map_err(io)?.is_file() {
@@ -291,7 +300,7 @@ impl Opened {
 
     /// Puts its tiles in their places.
     fn read_into(mut self, film: &mut Film) -> Result<(), PartError> {
-        let fail = |cause: String| PartError { file: self.path.clone(), cause };
+        let fail = |cause: String| PartError { file: self.path.clone(), cause, way_out: READ };
         let mut bytes = Box::new([0; STORED_TILE]);
         for tile in self.header.share.tiles(film.layout) {
             self.file.read_exact(&mut bytes[..]).map_err(|e| fail(e.to_string()))?;
@@ -323,7 +332,7 @@ pub fn merge(paths: &[PathBuf]) -> Result<Merged, PartError> {
     let (first_path, of) = (&paths[0], first.share.of);
     let mut places: Vec<Option<&Path>> = vec![None; parts.len().max(1)];
     for Opened { path, header, .. } in &parts {
-        let fail = |cause: String| Err(PartError { file: path.clone(), cause });
+        let fail = |cause: String| Err(PartError { file: path.clone(), cause, way_out: READ });
         let other = first_path.display();
         if let Some(what) = first.picture.difference(&header.picture) {
             return fail(format!("it does not belong to {other}: {what}"));
@@ -344,7 +353,7 @@ pub fn merge(paths: &[PathBuf]) -> Result<Merged, PartError> {
         let missing = (1..=of).find(|n| !parts.iter().any(|p| p.header.share.number == *n));
         let missing = missing.map_or_else(String::new, |n| format!(": part {n}/{of} is missing"));
         let cause = format!("{} of {of} parts are given{missing}", parts.len());
-        return Err(PartError { file: first_path.clone(), cause });
+        return Err(PartError { file: first_path.clone(), cause, way_out: READ });
     }
     let mut film = Film::new(Layout::new(first.picture.size));
     for part in parts {

@@ -112,6 +112,9 @@ fn about_key(key: &str) -> &'static str {
         "reflect" => "Share of the mirror image",
         "transmit" => "Share of what is seen through the surface",
         "ior" => "Index of refraction: air 1, water 1.33, glass 1.5, diamond 2.42",
+        "density" => {
+            "Mass per cubic unit of length, for the mass of solids; the picture does not show it"
+        }
         "material" => "The material of the solid",
         _ => about_form(key),
     }
@@ -231,6 +234,7 @@ pub(super) struct Scale {
 pub(super) fn scale(key: &str, range: Range, value: f64) -> Scale {
     let (low, high, logarithmic) = match key {
         "shininess" | "gloss" | "translucency" => (0.0, 1000.0, true),
+        "density" => (0.0, 25.0, false),
         "falloff" => (0.0, 20.0, false),
         "angle_degrees" => (1.0, 90.0, false),
         "ior" => (1.0, 2.5, false),

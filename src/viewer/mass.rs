@@ -12,9 +12,10 @@ use egui_plot::{HLine, Line, Plot, PlotPoints, Points};
 use super::app::App;
 use super::control::typed;
 use super::inspector::Selection;
-use crate::mass::{Goal, MassError, Measured, Properties, Report, Step, Wishes, measure};
+use crate::mass::{Goal, MassError, Measured, Properties, Report, Step, Stuff, Wishes, measure};
 use crate::progress::Progress;
 use crate::scene::Scene;
+use crate::scene::change::Change;
 use crate::session::Options;
 
 /// What the panel remembers from turn to turn.
@@ -22,7 +23,6 @@ pub(super) struct MassPanel {
     /// Whether it shows.
     pub(super) open: bool,
     threads: usize,
-    density: f64,
     /// The wanted error of the volume, as a share of it.
     wanted: f64,
     job: Option<Job>,
@@ -98,7 +98,6 @@ impl MassPanel {
         MassPanel {
             open: false,
             threads: options.threads,
-            density: 1.0,
             wanted: 1e-4,
             job: None,
             subject: None,
@@ -178,7 +177,7 @@ impl MassPanel {
         }
         ui.add_enabled_ui(self.job.is_none(), |ui| self.wishes_ui(ui));
         if let Some(subject) = &self.subject {
-            let same = scene.solids.get(subject.solid) == subject.scene.solids.get(subject.solid);
+            let same = weighs_like(scene, &subject.scene);
             let old = if same { "" } else { ", before its latest change" };
             let rays: u64 = self.steps.iter().map(|step| step.rays).sum();
             ui.label(format!("{}{old}: {rays} rays", subject.name()));
@@ -193,26 +192,27 @@ impl MassPanel {
     fn start(&mut self, ctx: &Context, scene: &Scene, solid: usize) {
         self.forget();
         let subject = Subject { scene: Arc::new(scene.clone()), solid };
-        let (density, goal) = (self.density, Goal::Error(self.wanted));
-        let wishes = Wishes { goal, density, ..Wishes::default() };
+        let wishes = Wishes { goal: Goal::Error(self.wanted), ..Wishes::default() };
         self.job = Some(Job::start(ctx, &subject, wishes, self.threads));
         self.subject = Some(subject);
     }
 
     fn wishes_ui(&mut self, ui: &mut Ui) {
-        let field = |ui: &mut Ui, label: &str, name: &str, field: DragValue, about: &str| {
-            ui.label(label);
-            let field = field.update_while_editing(false).custom_parser(typed);
-            let response = ui.add(field).accessible_name(name.to_owned());
-            response.on_hover_text(about).on_disabled_hover_text(about);
-        };
-        let about = "Mass per cubic unit of length";
-        let density = DragValue::new(&mut self.density).range(1e-9..=1e12).speed(0.01);
-        field(ui, "density", "density", density, about);
+        ui.label("error");
         let about = "The wanted error of the volume, as a share of it";
         let wanted = DragValue::new(&mut self.wanted).range(1e-7..=0.1).speed(1e-6);
-        field(ui, "error", "wanted mass error", wanted.max_decimals(7), about);
+        let wanted = wanted.max_decimals(7).update_while_editing(false).custom_parser(typed);
+        let response = ui.add(wanted).accessible_name("wanted mass error");
+        response.on_hover_text(about).on_disabled_hover_text(about);
     }
+}
+
+/// Whether all solids are as they were, and as dense.
+fn weighs_like(new: &Scene, old: &Scene) -> bool {
+    fn densities(scene: &Scene) -> impl Iterator<Item = Option<f64>> {
+        scene.solids.iter().map(|solid| Some(scene.materials.get(solid.material)?.density))
+    }
+    !Change::between(old, new).geometry && densities(old).eq(densities(new))
 }
 
 /// Volume over the number of rays, with its error on both sides.
@@ -254,9 +254,12 @@ fn shown(measured: Measured) -> String {
 }
 
 fn figures_ui(ui: &mut Ui, report: &Report) {
-    let Report { properties, steps: _, reached, torn, exact } = report;
+    let Report { properties, steps: _, reached, torn, made_of, exact } = report;
     let Properties { volume, mass, center, inertia, principal, axes } = properties;
-    let mut rows = vec![("volume".to_owned(), shown(*volume)), ("mass".to_owned(), shown(*mass))];
+    let mut rows = vec![("volume".to_owned(), shown(*volume))];
+    let stuff = |s: &Stuff| (format!("density of {}", s.material), s.density.to_string());
+    rows.extend(made_of.iter().map(stuff));
+    rows.push(("mass".to_owned(), shown(*mass)));
     let axes_names = ["x", "y", "z"];
     rows.extend(
         center.iter().zip(axes_names).map(|(c, axis)| (format!("centre {axis}"), shown(*c))),
@@ -300,5 +303,25 @@ impl App {
         let scene = self.document.scene();
         let close = panel.show(ui, |ui| self.mass.ui(ui, scene, solid)).inner;
         self.mass.open = !close;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::Document;
+
+    #[test]
+    fn figures_are_old_once_a_solid_weighs_otherwise() {
+        let old = Document::built_in().scene().clone();
+        let after = |change: &dyn Fn(&mut Scene)| {
+            let mut new = old.clone();
+            change(&mut new);
+            weighs_like(&new, &old)
+        };
+        assert!(after(&|_| {}));
+        assert!(after(&|scene| scene.materials[0].shininess = 7.0));
+        assert!(!after(&|scene| scene.materials[0].density = 7.0));
+        assert!(!after(&|scene| scene.solids[1].placement.scale.x = 7.0));
     }
 }

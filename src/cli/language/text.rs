@@ -38,7 +38,8 @@ pub(super) fn head() -> String {
          | refold | highlights are summed again from kept angles: no ray is cast |\n\
          | rereads | kept ray trees are read again: no ray is cast |\n\
          | traces some | new rays for the pixels concerned, the kept trees answer all others |\n\
-         | traces all | the picture is traced anew |\n\n\
+         | traces all | the picture is traced anew |\n\
+         | — | nothing: no picture shows it |\n\n\
          where it matters at all: an index of refraction of what neither transmits nor weighs costs \
          nothing. Two of them are the least and the most that it may cost. Whatever it is, the picture \
          is then the one that a fresh trace gives, byte for byte.\n"

@@ -18,7 +18,7 @@ use crate::scene::{Placement, Scene};
 
 /// Boxes around leaves are larger by this share of their coordinates: more than all roundings of
 /// crossings and of tests against them.
-const MARGIN: f64 = 1e-9;
+pub(crate) const MARGIN: f64 = 1e-9;
 
 /// A plain solid of a composite.
 #[derive(Debug)]
@@ -120,8 +120,9 @@ impl Leaf {
     }
 
     /// world_from_object at a time, if it moves.
-    pub(super) fn placed(&self, time: f64) -> Option<Placed> {
-        self.course.as_ref().map(|course| course.chain.at(time))
+    #[inline(always)]
+    pub(super) fn placed(&self, time: f64, known: &mut Places) -> Option<Placed> {
+        self.course.as_ref().map(|course| known.of(self.first, time, &course.chain))
     }
 
     /// The surface at a hit, and the point at which that part of it was as the shutter opened. The
@@ -168,6 +169,31 @@ impl Leaf {
             None => gradient,
             Some(course) => course.chain.at(time).normal(course.opening.normal_to_object(gradient)),
         }
+    }
+}
+
+/// Places that are remembered at once.
+const MOST_PLACES: usize = 64;
+
+/// Where moving leaves were when they were asked last: most rays of a thread are of one time each, but
+/// ask a leaf more than once.
+#[derive(Debug, Default)]
+pub(super) struct Places {
+    /// By the number of a leaf's first primitive, modulo their number: that number, a time, the place.
+    list: Vec<(u32, f64, Placed)>,
+}
+
+impl Places {
+    fn of(&mut self, first: u32, time: f64, chain: &Chain) -> Placed {
+        if self.list.is_empty() {
+            let nowhere = (0, f64::NAN, Placed::new(&Placement::default()));
+            self.list.resize(MOST_PLACES, nowhere);
+        }
+        let known = &mut self.list[first as usize % MOST_PLACES];
+        if (known.0, known.1) != (first, time) {
+            *known = (first, time, chain.at(time));
+        }
+        known.2
     }
 }
 

@@ -19,6 +19,7 @@ use glam::DVec3;
 use boxes::Boxes;
 pub(super) use build::{Chain, Parts};
 pub(super) use leaf::Leaf;
+pub(crate) use leaf::MARGIN;
 pub(super) use walk::Lists;
 
 /// A solid made of others.

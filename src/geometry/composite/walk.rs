@@ -11,7 +11,7 @@ use std::cmp::Ordering;
 use fearless_simd::{Level, dispatch};
 
 use super::boxes::{Line, WIDTH};
-use super::leaf::{Leaf, Part};
+use super::leaf::{Leaf, Part, Places};
 use super::{Child, Composite, NO_PARENT};
 use crate::geometry::hierarchy::STACK;
 use crate::geometry::motion::Moment;
@@ -37,6 +37,8 @@ pub(in crate::geometry) struct Lists {
     /// The same of a mesh, with its triangles.
     hits: Vec<(f64, u32)>,
     events: Vec<Event>,
+    /// Of leaves that move.
+    places: Places,
     /// Per gate how many of its children are there, per leaf how often it is.
     gates: Vec<i32>,
     leaves: Vec<i32>,
@@ -161,7 +163,7 @@ impl Sight<'_> {
     /// The same as [`Sight::gate`] of a leaf whose box the line meets.
     fn leaf(&mut self, leaf: &Leaf) -> Option<Clip> {
         let start = self.departure.start_in(leaf.first, leaf.count(), leaf.complement);
-        let (origin, direction) = match leaf.placed(self.time) {
+        let (origin, direction) = match leaf.placed(self.time, &mut self.lists.places) {
             None => (self.ray.origin, self.ray.direction),
             Some(placed) => placed.ray_to_object(self.ray.origin, self.ray.direction),
         };

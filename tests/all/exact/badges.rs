@@ -118,8 +118,10 @@ fn lie(session: &mut Session, parameter: &Parameter, cost: Cost) -> Option<Strin
         }
         Cost::Instant => {
             let numeric = matches!(parameter.kind, Kind::Coefficient | Kind::Number);
-            let ends = range.filter(|_| numeric).map_or(vec![], |r| vec![r.low, r.high]);
-            let ends = ends.into_iter().map(|end| raised(&scene, parameter, end));
+            let ends = range.filter(|_| numeric).into_iter().flat_map(|range| {
+                [range.low, range.high].into_iter().filter(move |end| range.contains(*end))
+            });
+            let ends = ends.map(|end| raised(&scene, parameter, end));
             let values: Vec<Scene> = ends.chain(others(&scene, parameter)).collect();
             values.iter().find_map(|edited| claim(edited, &instant))
         }

@@ -14,6 +14,7 @@ pub(crate) mod random;
 mod regrows;
 mod stopped;
 mod table;
+mod table_csg;
 mod textures;
 mod threads;
 
@@ -24,6 +25,12 @@ use rayforest::film::layout::LANES;
 use rayforest::progress::Progress;
 use rayforest::scene::{Scene, path, read};
 use rayforest::session::{Options, Session};
+
+/// Scenes of all kinds of lights, materials, solids and operations.
+pub(crate) fn texts_of_all_kinds() -> Vec<String> {
+    let solids = format!("{}{}", table::SCENE, table::SOLIDS);
+    vec![solids, table::LAMPS.to_owned(), table_csg::CSG.to_owned(), regrows::DRINK.to_owned()]
+}
 
 /// More than any test needs.
 const PLENTY: u64 = 1 << 32;

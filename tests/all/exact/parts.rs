@@ -102,7 +102,10 @@ fn a_part_is_no_column_of_the_picture() {
 
 fn refusal(paths: &[PathBuf]) -> String {
     let error: PartError = part::merge(paths).err().expect("no picture");
-    error.to_string()
+    let text = error.to_string();
+    let (cause, way_out) = text.split_once("\n  help: ").expect("a way out");
+    assert!(way_out.contains("every part"), "{text}");
+    cause.to_owned()
 }
 
 /// A picture of six tiles in three parts, its files in the folder.

@@ -415,7 +415,7 @@ fn csg_part() {
 
 /// A tumbler cut from glass, water in it that shares its wall and reaches into it, ice that swims and
 /// a bead of air, on a table whose top is the tumbler's bottom.
-const DRINK: &str = r#"
+pub(super) const DRINK: &str = r#"
 version = 1
 [picture]
 size = [56, 36]

@@ -359,6 +359,8 @@ pub(super) const ROWS: &[Row] = &[
     row("materials.glass.translucency", BLUR),
     // What neither mirrors nor transmits has nothing to blur.
     row("materials.*.gloss", &[("20", Nothing), ("0.5", Nothing), ("@", Nothing)]),
+    // Mass is not seen.
+    row("materials.*.density", &[("7.85", Nothing), ("1e12", Nothing), ("@", Nothing)]),
     row("materials.*.translucency", &[("20", Nothing), ("0.5", Nothing), ("@", Nothing)]),
     // Which of two surfaces is there decides where rays go.
     row("materials.*.priority", &[("1", Retrace), ("1000", Retrace), ("@", Retrace)]),

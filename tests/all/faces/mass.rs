@@ -26,6 +26,13 @@ fn a_ball_weighs_what_the_formula_says() {
     let rays: Vec<u64> = steps.iter().map(|step| step["rays"].as_u64().unwrap()).collect();
     assert!(rays.len() > 1 && rays.is_sorted_by(|a, b| a < b), "{rays:?}");
     assert_eq!(ball["rays"].as_u64(), Some(rays.iter().sum()));
+    assert_eq!(ball["made_of"][0]["material"], "mirror");
+    assert_eq!(number("/made_of/0/density"), 2.0);
+    // Of the material, where none is given.
+    let dense = ["mass", "scene.toml", "ball", "--rays", "3000", "--set"];
+    let ran = succeed(folder.path(), &[&dense[..], &["materials.mirror.density=2.5"]].concat());
+    assert!(ran.results.contains("density           2.5 (mirror)"), "{}", ran.results);
+    assert!(ran.results.contains("mass              10.4"), "{}", ran.results);
     // A bigger ball by an edit, and fewer rays.
     let arguments =
         ["mass", "scene.toml", "ball", "--set", "solids.ball.scale=2", "--rays", "3000"];

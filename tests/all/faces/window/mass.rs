@@ -5,7 +5,8 @@ use crate::faces::SCENE;
 
 /// A window whose panel of mass properties is open.
 fn weighing() -> Window {
-    let mut window = Window::with_scene(SCENE, Vec::new());
+    let dense = SCENE.replace("reflect = 0.5", "reflect = 0.5\ndensity = 2");
+    let mut window = Window::with_scene(&dense, Vec::new());
     window.menu(&["View", "Mass properties"]);
     assert!(window.shows("Close mass"));
     window
@@ -16,7 +17,6 @@ fn the_selected_solid_is_measured() {
     let mut window = weighing();
     window.click("ball");
     window.type_into("wanted mass error", "0.001");
-    window.type_into("density", "2");
     window.click("Measure ball");
     window.until_text("volume by formula");
     window.until_text("4.18879020");
@@ -24,6 +24,7 @@ fn the_selected_solid_is_measured() {
     let at = texts.iter().position(|text| text == "mass").expect("a line for the mass");
     let mass: f64 = texts[at + 1].split(" ±").next().unwrap().parse().unwrap();
     assert!((mass - 2.0 * 4.188_790_2).abs() < 0.01, "{mass}");
+    assert_eq!(texts[at - 2..at], ["density of mirror", "2"]);
     // The figures stay, and say that they are old, once the solid is another.
     window.type_into("radius value", "1.5");
     window.until_text("ball, before its latest change");

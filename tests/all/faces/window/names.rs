@@ -190,7 +190,7 @@ fn every_control_of_mass_has_a_name_and_a_tooltip() {
     // What moved to make room is not new.
     let mut others = window.controls();
     others.retain(|control| before.iter().any(|old| old.name == control.name));
-    window.walk(&others, 4);
+    window.walk(&others, 3);
 }
 
 #[test]
