@@ -138,7 +138,7 @@ impl MassPanel {
             ui.colored_label(ui.visuals().error_fg_color, error.to_string());
         }
         if self.steps.is_empty() {
-            ui.weak("Measures volume, centre of mass and moments of inertia of a solid by parallel rays");
+            ui.weak("Choose a solid: its volume, centre of mass and moments of inertia are measured by parallel rays");
             // The panel keeps its height until there is something to show.
             ui.allocate_space(ui.available_size());
             return close;
