@@ -177,7 +177,7 @@ impl Gpu {
     }
 
     /// Waits until everything is done.
-    pub(super) fn wait(&self) -> Result<(), GpuError> {
+    pub fn wait(&self) -> Result<(), GpuError> {
         let waited = self.device.poll(wgpu::PollType::wait_indefinitely());
         let failed = |cause: String| self.fault().unwrap_or(GpuError::Failed(line(&cause)));
         waited.map(|_| ()).map_err(|e| failed(e.to_string()))
