@@ -152,7 +152,7 @@ impl App {
     pub(super) fn lose_screen(&self) {
         if let Some(Screen { state, .. }) = &self.screen {
             state.device.destroy();
-            let _ = state.device.poll(wgpu::PollType::Poll);
+            let _ = state.device.poll(wgpu::PollType::wait_indefinitely());
         }
     }
 }

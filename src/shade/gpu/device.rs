@@ -43,8 +43,12 @@ impl Watch {
     pub fn new(device: &wgpu::Device, wake: impl Fn() + Clone + Send + Sync + 'static) -> Watch {
         let watch = Watch::default();
         let (lost, woken) = (watch.clone(), wake.clone());
-        device.set_device_lost_callback(move |_, cause| {
-            lost.tell(GpuError::Lost(line(&cause)));
+        device.set_device_lost_callback(move |reason, cause| {
+            let cause = match reason {
+                wgpu::DeviceLostReason::Destroyed => "it was given up".into(),
+                wgpu::DeviceLostReason::Unknown => line(&cause),
+            };
+            lost.tell(GpuError::Lost(cause));
             woken();
         });
         let failed = watch.clone();
@@ -154,8 +158,8 @@ impl Gpu {
     /// Gives the device up, as a driver does that fails.
     pub fn lose(&self) {
         self.device.destroy();
-        // The callback is called by whoever looks after the device next.
-        let _ = self.device.poll(wgpu::PollType::Poll);
+        // The callback is called once nothing runs any more.
+        let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
     }
 
     /// Bytes that `fill` copies into a buffer.

@@ -54,9 +54,9 @@ fn assert_alike(gpu: &Gpu, product: &mut Product, session: &Session, what: &str)
     }
 }
 
-fn edit(session: &mut Session, edits: &[(&str, &str)]) {
+fn edit(session: &mut Session, path: &str, value: &str) {
     let mut scene = Scene::clone(session.scene());
-    edits.iter().for_each(|(name, value)| set(&mut scene, name, value));
+    set(&mut scene, path, value);
     session.edit(scene, &Progress::default()).unwrap();
 }
 
@@ -79,24 +79,21 @@ fn a_card_follows_every_class_of_edit() {
     let gpu = gpu();
     let mut product = Product::new(gpu.clone());
     let mut session = open(&shipped("whitted", [190, 101], 4), 2);
-    let material = session.scene().materials[0].name.clone();
-    let path = |field: &str| format!("materials.{material}.{field}");
-    let edits = [
-        vec![(path("diffuse"), "0.35")],
-        vec![("picture.exposure".to_owned(), "1.3")],
-        vec![(path("shininess"), "7")],
-        vec![(path("reflect"), "0.7"), (path("ior"), "1.31")],
-        vec![("trace.depth".to_owned(), "2")],
-        vec![("picture.size".to_owned(), "[77, 64]")],
-        vec![("camera.fov".to_owned(), "61")],
-    ];
     assert_alike(&gpu, &mut product, &session, "as opened");
-    for step in edits {
-        let step: Vec<(&str, &str)> = step.iter().map(|(path, value)| (&**path, *value)).collect();
+    for (path, value) in [
+        ("materials.tiles.diffuse", "0.35"),
+        ("picture.exposure", "1.3"),
+        ("materials.mirror.shininess", "7"),
+        ("materials.glass.ior", "1.31"),
+        ("materials.tiles.reflect", "0.4"),
+        ("trace.depth", "2"),
+        ("picture.size", "[77, 64]"),
+        ("camera.fov_degrees", "61"),
+    ] {
         let before = session.frame().clone();
-        edit(&mut session, &step);
-        assert!(*session.frame() != before, "{step:?} is seen");
-        assert_alike(&gpu, &mut product, &session, &format!("{step:?}"));
+        edit(&mut session, path, value);
+        assert!(*session.frame() != before, "{path} = {value} is seen");
+        assert_alike(&gpu, &mut product, &session, path);
     }
 }
 

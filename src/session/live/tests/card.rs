@@ -45,7 +45,7 @@ fn the_card_follows_edits_of_every_class() {
     let mut edited = scene.clone();
     for (path, value) in [
         ("materials.tiles.diffuse", "0.3"),
-        ("materials.tiles.shininess", "7"),
+        ("materials.mirror.shininess", "7"),
         ("picture.exposure", "0.5"),
         ("materials.tiles.reflect", "0.4"),
         ("materials.tiles.reflect", "0.0"),
@@ -68,7 +68,8 @@ fn pictures_before_the_whole_one_are_the_processors() {
     let gpu = card();
     let mut window = Window::new(OPTIONS);
     window.live.draw_on(Some(gpu));
-    window.want(&slow());
+    // Too many rays to be traced whole at once.
+    window.want(&scene("glass", [128, 72], 8));
     while !window.status.in_step {
         let taken = window.stages.len();
         window.wait("a picture", |w| w.stages.len() > taken || w.status.in_step);

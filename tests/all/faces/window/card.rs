@@ -87,7 +87,7 @@ fn a_lost_card_costs_neither_work_nor_picture() {
     let before = window.scene_of_document();
     assert!(!window.app().is_moving());
     state.device.destroy();
-    let _ = state.device.poll(eframe::wgpu::PollType::Poll);
+    let _ = state.device.poll(eframe::wgpu::PollType::wait_indefinitely());
     window.until_text("the graphics card was lost (");
     window.until_text("nothing of your work is lost");
     assert!(window.app().is_moving(), "it waits for another window");
