@@ -4,12 +4,12 @@
 //! there, and `shade.wgsl` for what they call. The card may fuse multiplications with additions, so
 //! that its light differs from the CPU's in the last bits; what is exported is the CPU's.
 //!
-//! Nothing here but [`Product::film`], [`Product::measure`] and [`Gpu::read`] waits for the card:
-//! uploads are copied to memory of the driver's, and a dispatch is queued. The thread that shades calls
-//! [`Product::frame`]: it owns the matrix, so that the window's thread needs to know nothing of it, and
-//! neither an upload of a whole matrix nor a busy driver holds the window up. Cards draw in the order
-//! in which they are told to, and a picture that somebody still holds is never drawn into: what the
-//! window shows is whole.
+//! The thread that shades calls [`Product::frame`], not the window's: it owns the matrix, so that the
+//! window needs to know nothing of it, and neither an upload of a whole matrix nor a busy card holds the
+//! window up. Uploads are copied to memory of the driver's and a dispatch is queued, without waiting for
+//! either; only the dispatch before it must be done, because the window is drawn by the same queue.
+//! Cards draw in the order in which they are told to, and a picture that somebody still holds is never
+//! drawn into: what the window shows is whole.
 
 mod device;
 mod measure;
@@ -19,6 +19,9 @@ mod picture;
 mod tests;
 
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::{Acquire, Release};
+use std::time::{Duration, Instant};
 
 use crate::film::layout::{LANES, TILE_BLOCKS};
 use crate::film::{Film, FilmBlock};
@@ -38,7 +41,14 @@ pub struct Product {
     matrix: Option<Matrix>,
     /// All pictures that are shown, were, or may be again.
     pictures: Vec<Arc<Picture>>,
+    /// Whether the card is still at the picture that it was told to draw last.
+    is_busy: Arc<AtomicBool>,
 }
+
+/// A card that has not drawn a picture after this time never will.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// How often it is asked whether it has.
+const GLANCE: Duration = Duration::from_micros(300);
 
 struct Matrix {
     size: [u32; 2],
@@ -65,7 +75,8 @@ impl Product {
     pub fn within(gpu: Gpu, limits: Limits) -> Product {
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let look = gpu.buffer("look", size_of::<Look>() as u64, usage);
-        Product { gpu, limits, look, matrix: None, pictures: Vec::new() }
+        let is_busy = Arc::default();
+        Product { gpu, limits, look, matrix: None, pictures: Vec::new(), is_busy }
     }
 
     /// How many bindings the matrix's planes are spread over.
@@ -98,8 +109,8 @@ impl Product {
         Ok(film)
     }
 
-    /// The picture as shown: product, `gain` and sRGB in one pass. Does not wait for it: whatever the
-    /// card is told to do with it afterwards finds it done.
+    /// The picture as shown: product, `gain` and sRGB in one pass. Waits for the one before, not for
+    /// this: whatever the card is told to do with it afterwards finds it done.
     pub fn frame(
         &mut self,
         transport: &Transport,
@@ -108,6 +119,7 @@ impl Product {
     ) -> Result<Arc<Picture>, GpuError> {
         let gpu = self.gpu.clone();
         let size = transport.layout.size;
+        self.wait_for_last()?;
         let drawn = caught(&gpu.device, || {
             self.ready(transport, values)?;
             let picture = self.free_picture(size);
@@ -115,11 +127,32 @@ impl Product {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             self.draw(&mut encoder.begin_compute_pass(&Default::default()), &picture);
             gpu.queue.submit([encoder.finish()]);
+            self.is_busy.store(true, Release);
+            let is_busy = self.is_busy.clone();
+            gpu.queue.on_submitted_work_done(move || is_busy.store(false, Release));
             Ok(picture)
         });
         match gpu.fault().filter(GpuError::is_lost) {
             Some(lost) => Err(lost),
             None => drawn,
+        }
+    }
+
+    /// Returns when the card has drawn the picture before. The driver's own waiting would hold locks
+    /// that the window's drawing needs.
+    fn wait_for_last(&self) -> Result<(), GpuError> {
+        let begun = Instant::now();
+        loop {
+            // Whoever polls runs the callbacks.
+            let polled = self.gpu.device.poll(wgpu::PollType::Poll);
+            match self.gpu.fault().filter(GpuError::is_lost) {
+                Some(lost) => return Err(lost),
+                None if !self.is_busy.load(Acquire) => return Ok(()),
+                None if polled.is_err() || begun.elapsed() > PATIENCE => {
+                    return Err(GpuError::Failed("it does not answer".into()));
+                }
+                None => std::thread::sleep(GLANCE),
+            }
         }
     }
 

@@ -1,15 +1,17 @@
 //! The shader's structs and constants are those of Rust.
 
+use std::sync::Arc;
+
 use wgpu::naga::front::wgsl::parse_str;
 use wgpu::naga::proc::Layouter;
 use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
 use wgpu::naga::{Expression, Literal, Module, TypeInner};
 
 use super::device::GROUP;
-use super::parts::{Corner, Look, Record};
+use super::parts::{Corner, Limits, Look, Record, parts, pieces};
 use crate::film::FilmBlock;
-use crate::film::layout::{BLOCK, LANES, TILE, TILE_BLOCKS};
-use crate::fold::transport::{BlockStart, Plane, Single};
+use crate::film::layout::{BLOCK, LANES, Layout, TILE, TILE_BLOCKS};
+use crate::fold::transport::{BlockStart, Plane, Single, Transport, TransportTile};
 
 const SHADER: &str = include_str!("../shade.wgsl");
 
@@ -118,4 +120,61 @@ fn a_record_writes_its_members_where_they_lie() {
     assert_eq!(bytes, [7, 0, 0, 0, 2, 1, 0, 0]);
     assert_eq!(std::mem::offset_of!(Single, coefficient), 4);
     assert_eq!(std::mem::offset_of!(BlockStart, single), 4);
+}
+
+/// A matrix of five tiles, the third of which has planes and the fourth singles.
+fn transport() -> Transport {
+    let tile = |planes: u32, singles: u32| {
+        let mut starts = vec![BlockStart::default(); TILE_BLOCKS];
+        starts.push(BlockStart { plane: planes, single: singles });
+        let single = |entry| Single::new(entry, 3, 0.5);
+        Arc::new(TransportTile {
+            terms: (0..planes.max(singles)).map(|i| i * 2).collect(),
+            starts,
+            entries: (0..planes).collect(),
+            planes: vec![Plane::default(); planes as usize],
+            singles: (0..singles).map(single).collect(),
+            ..TransportTile::default()
+        })
+    };
+    let tiles = vec![tile(0, 0), tile(0, 0), tile(9, 0), tile(0, 7), tile(1, 1)];
+    let layout = Layout::new([5 * TILE, 7]);
+    Transport { layout, samples: 1, tiles, ..Transport::default() }
+}
+
+const LARGE: Limits = Limits { binding: 1 << 27, tiles: 65_535, texture_side: 8192 };
+
+#[test]
+fn a_tile_that_changes_is_uploaded_again_and_no_other() {
+    let mut transport = transport();
+    let cut = parts(&transport, &pieces(transport.layout.size, LARGE), LARGE);
+    let [part] = &mut cut.unwrap()[..] else { panic!("one part") };
+    assert_eq!(part.renew(&transport), []);
+    // The same bytes elsewhere are another tile: whether they differ is not looked at.
+    transport.tiles[3] = Arc::new(TransportTile::clone(&transport.tiles[3]));
+    // What is changed where it lies is another one too, though nobody else has it.
+    Arc::make_mut(&mut transport.tiles[2]).planes[4].0[5] = 1.0;
+    Arc::make_mut(&mut transport.tiles[0]);
+    assert_eq!(part.renew(&transport), [0..1, 2..4]);
+    assert_eq!(part.renew(&transport), []);
+    assert!(part.fits(&transport));
+    Arc::make_mut(&mut transport.tiles[3]).singles.pop();
+    assert!(!part.fits(&transport), "another length has no place");
+}
+
+#[test]
+fn parts_hold_every_tile_once_and_keep_the_limits() {
+    let transport = transport();
+    let planes = |count: u64| Limits { binding: count * 64, ..LARGE };
+    let cut = |limits: Limits| {
+        let parts = parts(&transport, &pieces(transport.layout.size, limits), limits)?;
+        Some(parts.iter().map(|part| part.tiles.clone()).collect::<Vec<_>>())
+    };
+    assert_eq!(cut(LARGE), Some(vec![vec![0, 1, 2, 3, 4]]));
+    assert_eq!(cut(Limits { tiles: 2, ..LARGE }), Some(vec![vec![0, 1], vec![2, 3], vec![4]]));
+    // The light of a tile, 12 288 bytes, is the largest here.
+    assert_eq!(cut(planes(3 * 192)), Some(vec![vec![0, 1, 2], vec![3, 4]]));
+    assert_eq!(cut(planes(191)), None);
+    let side = Limits { texture_side: 95, ..LARGE };
+    assert_eq!(cut(side), Some(vec![vec![0, 1], vec![2, 3], vec![4]]));
 }

@@ -14,9 +14,11 @@ fn the_bench_measures_a_card_by_its_own_clock() {
         let value = row.pointer(path).and_then(Value::as_f64);
         value.unwrap_or_else(|| panic!("{path} of {row:#}"))
     };
-    for time in ["matrix_upload", "values_upload", "dispatch", "edit_call", "processor"] {
+    for time in ["matrix_upload", "dispatch", "edit_call", "processor"] {
         assert!(number(&format!("/{time}_ms/median")) > 0.0, "{time}");
     }
+    // So few bytes may take no time that the card can tell.
+    assert!(number("/values_upload_ms/median") >= 0.0);
     assert_eq!((number("/size/0"), number("/size/1")), (48.0, 27.0));
     assert_eq!(number("/bindings"), 1.0);
     assert!(number("/terms") > 1.0 && number("/transport_bytes") > 48.0 * 27.0);
