@@ -25,8 +25,9 @@ fn light_difference(cpu: &Film, gpu: &Film) -> Option<String> {
         film.blocks.iter().flat_map(|block| block.0.iter().flatten().copied()).collect()
     };
     let (cpu, gpu) = (values(cpu), values(gpu));
-    let differ = |(a, b): (&f32, &f32)| !((a - b).abs() <= LIGHT * a.abs().max(b.abs()));
-    let at = cpu.iter().zip(&gpu).position(differ)?;
+    let alike = |(a, b): (&f32, &f32)| (a - b).abs() <= LIGHT * a.abs().max(b.abs());
+    // What is no number is like nothing.
+    let at = cpu.iter().zip(&gpu).position(|pair| !alike(pair))?;
     Some(format!("value {at}: {:e} and {:e}", cpu[at], gpu[at]))
 }
 
