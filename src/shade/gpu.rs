@@ -86,6 +86,11 @@ impl Product {
 
     /// The linear picture of all tiles, in the transport's layout; waits for it.
     pub fn film(&mut self, transport: &Transport, values: &[[f32; 4]]) -> Result<Film, GpuError> {
+        let device = self.gpu.device.clone();
+        caught(&device, || self.film_of(transport, values))
+    }
+
+    fn film_of(&mut self, transport: &Transport, values: &[[f32; 4]]) -> Result<Film, GpuError> {
         let gpu = self.gpu.clone();
         let mut film = Film::new(transport.layout);
         let matrix = self.ready(transport, values)?;
@@ -192,9 +197,7 @@ impl Product {
             }
             None => Matrix::upload(&self.gpu, &self.look, transport, values.len(), self.limits)?,
         };
-        let mut bytes = Vec::with_capacity(values.len() * 16);
-        values.iter().flatten().for_each(|v| bytes.extend_from_slice(&v.to_le_bytes()));
-        self.gpu.queue.write_buffer(&matrix.values, 0, &bytes);
+        self.gpu.queue.write_buffer(&matrix.values, 0, &bytes_of(values));
         Ok(self.matrix.insert(matrix))
     }
 }
@@ -299,6 +302,13 @@ fn upload_array(gpu: &Gpu, plan: &Part, kind: Kind, transport: &Transport) -> wg
             view.slice(place.start as usize..place.end as usize).copy_from_slice(&bytes);
         }
     })
+}
+
+/// Values of terms as the shader reads them.
+fn bytes_of(values: &[[f32; 4]]) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(size_of_val(values));
+    values.iter().flatten().for_each(|value| bytes.extend_from_slice(&value.to_le_bytes()));
+    bytes
 }
 
 /// Blocks of light from the bytes of the shader's.

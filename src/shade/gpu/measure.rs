@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::device::{GpuError, caught};
-use super::{Matrix, Product};
+use super::{Matrix, Product, bytes_of};
 use crate::fold::transport::Transport;
 
 /// Milliseconds of one upload of a matrix and of one edit.
@@ -37,20 +37,29 @@ impl Product {
         })?;
         let matrix = begun.elapsed().as_secs_f64() * 1e3;
         let [values, dispatch] = match self.gpu.has_clock() {
-            true => self.timed(transport, gain)?.map(Some),
+            true => {
+                let device = self.gpu.device.clone();
+                caught(&device, || self.timed(transport, values, gain))?.map(Some)
+            }
             false => [None; 2],
         };
         Ok(Timings { matrix, values, dispatch })
     }
 
     /// Milliseconds of copying the values and of the product.
-    fn timed(&mut self, transport: &Transport, gain: f32) -> Result<[f64; 2], GpuError> {
+    fn timed(
+        &mut self,
+        transport: &Transport,
+        values: &[[f32; 4]],
+        gain: f32,
+    ) -> Result<[f64; 2], GpuError> {
         let picture = self.free_picture(transport.layout.size);
         self.write_look(gain);
         let gpu = self.gpu.clone();
-        let Some(Matrix { values, .. }) = &self.matrix else { return Ok([0.0; 2]) };
+        let Some(Matrix { values: target, .. }) = &self.matrix else { return Ok([0.0; 2]) };
         let usage = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
-        let source = gpu.buffer("values to be copied", values.size(), usage);
+        let source = gpu.buffer("values to be copied", target.size(), usage);
+        gpu.queue.write_buffer(&source, 0, &bytes_of(values));
         let set = gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
             label: Some("clock"),
             ty: wgpu::QueryType::Timestamp,
@@ -58,11 +67,9 @@ impl Product {
         });
         let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
         let resolved = gpu.buffer("times", 32, usage);
-        let read = gpu.read_back(32, |encoder, target| {
-            // What is in memory of the card's is copied twice: the values themselves stay.
-            encoder.copy_buffer_to_buffer(values, 0, &source, 0, values.size());
+        let read = gpu.read_back(32, |encoder, times| {
             encoder.write_timestamp(&set, 0);
-            encoder.copy_buffer_to_buffer(&source, 0, values, 0, values.size());
+            encoder.copy_buffer_to_buffer(&source, 0, target, 0, target.size());
             encoder.write_timestamp(&set, 1);
             let clock = wgpu::ComputePassTimestampWrites {
                 query_set: &set,
@@ -77,7 +84,7 @@ impl Product {
                 &picture,
             );
             encoder.resolve_query_set(&set, 0..4, &resolved, 0);
-            encoder.copy_buffer_to_buffer(&resolved, 0, target, 0, 32);
+            encoder.copy_buffer_to_buffer(&resolved, 0, times, 0, 32);
         })?;
         let (ticks, _) = read.as_chunks::<8>();
         let ticks: Vec<u64> = ticks.iter().map(|&bytes| u64::from_le_bytes(bytes)).collect();

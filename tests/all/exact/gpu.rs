@@ -53,6 +53,7 @@ fn assert_alike(gpu: &Gpu, product: &mut Product, session: &Session, what: &str)
     if let Some(difference) = picture_difference(session.frame(), &frame) {
         panic!("{what}: {difference}");
     }
+    assert_eq!(gpu.fault(), None, "{what}");
 }
 
 fn edit(session: &mut Session, path: &str, value: &str) {
