@@ -14,7 +14,6 @@ mod watch;
 use std::fmt;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use serde_json::Value;
@@ -40,9 +39,9 @@ pub struct Arguments {
     /// What draws the picture in the window; chosen by what there is if not given.
     #[arg(long, value_enum)]
     renderer: Option<Renderer>,
-    /// Give the graphics card up after some seconds, as a driver does that fails: for tests.
-    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, hide = true)]
-    lose_graphics: Option<Duration>,
+    /// Give the graphics card up once there is such a file, as a driver does that fails: for tests.
+    #[arg(long, value_name = "FILE", hide = true)]
+    lose_graphics: Option<PathBuf>,
 }
 
 /// What draws the picture in the window.
@@ -176,7 +175,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
 fn window(
     scene: Option<PathBuf>,
     renderer: Option<Renderer>,
-    lose_after: Option<Duration>,
+    lose_at: Option<PathBuf>,
 ) -> Result<(), Failure> {
     let graphics = match renderer {
         None => Graphics::Auto,
@@ -185,7 +184,7 @@ fn window(
         Some(Renderer::Glow) => Graphics::Glow,
     };
     let options = Options::default();
-    let opening = Opening { scene: scene.clone(), options, graphics, lose_after };
+    let opening = Opening { scene: scene.clone(), options, graphics, lose_at };
     match crate::viewer::run(opening) {
         Ok(()) => Ok(()),
         Err(error @ WindowError::NoDisplay(_)) => demo::run(scene.as_deref(), &error.to_string()),
@@ -340,11 +339,6 @@ fn parse_scene(text: &str) -> Result<PathBuf, String> {
         return Err("there is neither a command nor a scene file of this name".into());
     }
     Ok(path)
-}
-
-fn parse_seconds(text: &str) -> Result<Duration, String> {
-    let seconds = text.parse().ok().and_then(|s| Duration::try_from_secs_f64(s).ok());
-    seconds.ok_or_else(|| format!("`{text}` is not a number of seconds"))
 }
 
 fn parse_memory(text: &str) -> Result<f64, String> {

@@ -5,7 +5,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use eframe::egui::{Ui, ViewportBuilder, ViewportCommand};
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
@@ -44,8 +44,9 @@ pub struct Opening {
     pub options: Options,
     /// What draws it.
     pub graphics: Graphics,
-    /// Gives the first window's graphics card up after this time, as a driver does that fails.
-    pub lose_after: Option<Duration>,
+    /// Gives the first window's graphics card up once there is such a file, as a driver does that
+    /// fails: for tests.
+    pub lose_at: Option<PathBuf>,
 }
 
 /// The application, which outlives its window.
@@ -60,7 +61,7 @@ pub fn run(mut opening: Opening) -> Result<(), WindowError> {
     loop {
         let opened = open(&opening, &kept);
         let lost = kept.borrow().as_ref().is_some_and(App::is_moving);
-        opening.lose_after = None;
+        opening.lose_at = None;
         opening.graphics = match (opened, opening.graphics) {
             (Ok(()), Graphics::Auto | Graphics::Gpu) if lost => Graphics::Cpu,
             (Ok(()), Graphics::Cpu) if lost => Graphics::Glow,
@@ -85,7 +86,7 @@ fn no_display(message: &str) -> WindowError {
 }
 
 fn open(opening: &Opening, kept: &Kept) -> eframe::Result {
-    let Opening { scene, options, graphics, lose_after } = opening.clone();
+    let Opening { scene, options, graphics, lose_at } = opening.clone();
     let viewport = ViewportBuilder::default()
         .with_title("Rayforest")
         .with_app_id("rayforest")
@@ -117,7 +118,6 @@ fn open(opening: &Opening, kept: &Kept) -> eframe::Result {
         if let Some(state) = &context.wgpu_render_state {
             app.draw_on(ctx, state, graphics);
         }
-        let lose_at = lose_after.map(|time| Instant::now() + time);
         Ok(Box::new(Shell { kept: kept.clone(), lose_at }) as Box<dyn eframe::App>)
     };
     eframe::run_native("rayforest", native, Box::new(setup))
@@ -126,17 +126,17 @@ fn open(opening: &Opening, kept: &Kept) -> eframe::Result {
 /// A window of the application's, as eframe wants it.
 struct Shell {
     kept: Kept,
-    /// When its card is given up.
-    lose_at: Option<Instant>,
+    /// The file at which its card is given up.
+    lose_at: Option<PathBuf>,
 }
 
 impl eframe::App for Shell {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let mut kept = self.kept.borrow_mut();
         let Some(app) = kept.as_mut() else { return };
-        if let Some(at) = self.lose_at {
-            ui.ctx().request_repaint_after(at.saturating_duration_since(Instant::now()));
-            if Instant::now() >= at {
+        if let Some(file) = &self.lose_at {
+            ui.ctx().request_repaint_after(Duration::from_millis(50));
+            if file.exists() {
                 self.lose_at = None;
                 app.lose_screen();
             }

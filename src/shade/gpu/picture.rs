@@ -57,7 +57,7 @@ impl Picture {
         for part in &self.parts {
             let Piece { corner: [left, top], size: [wide, tall] } = part.piece;
             let row = (wide * 4).next_multiple_of(ROW);
-            let bytes = gpu.read_back(u64::from(row * tall), |encoder, target| {
+            let bytes = gpu.read_back(u64::from(row) * u64::from(tall), |encoder, target| {
                 let layout = wgpu::TexelCopyBufferLayout {
                     offset: 0,
                     bytes_per_row: Some(row),
