@@ -39,7 +39,7 @@ pub struct Arguments {
     /// What draws the picture in the window; chosen by what there is if not given.
     #[arg(long, value_enum)]
     renderer: Option<Renderer>,
-    /// Give the graphics card up once there is such a file, as a driver does that fails: for tests.
+    /// Give the graphics card up when there is such a file, as a driver does that fails: for tests.
     #[arg(long, value_name = "FILE", hide = true)]
     lose_graphics: Option<PathBuf>,
 }

@@ -44,8 +44,8 @@ pub struct Opening {
     pub options: Options,
     /// What draws it.
     pub graphics: Graphics,
-    /// Gives the first window's graphics card up once there is such a file, as a driver does that
-    /// fails: for tests.
+    /// Gives the window's graphics card up, as a driver does that fails, when there is such a file,
+    /// and takes the file away: for tests.
     pub lose_at: Option<PathBuf>,
 }
 
@@ -61,7 +61,6 @@ pub fn run(mut opening: Opening) -> Result<(), WindowError> {
     loop {
         let opened = open(&opening, &kept);
         let lost = kept.borrow().as_ref().is_some_and(App::is_moving);
-        opening.lose_at = None;
         opening.graphics = match (opened, opening.graphics) {
             (Ok(()), Graphics::Auto | Graphics::Gpu) if lost => Graphics::Cpu,
             (Ok(()), Graphics::Cpu) if lost => Graphics::Glow,
@@ -136,8 +135,7 @@ impl eframe::App for Shell {
         let Some(app) = kept.as_mut() else { return };
         if let Some(file) = &self.lose_at {
             ui.ctx().request_repaint_after(Duration::from_millis(50));
-            if file.exists() {
-                self.lose_at = None;
+            if std::fs::remove_file(file).is_ok() {
                 app.lose_screen();
             }
         }

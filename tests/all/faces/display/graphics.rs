@@ -86,5 +86,10 @@ fn a_window_whose_graphics_card_is_lost_opens_again_with_all_that_was_done() {
     twin.until_exact();
     twin.hover(REST);
     desk.until_part_like(&mut twin, upper, "the edit is taken back");
+    // If its card is lost too, OpenGL draws.
+    std::fs::write(desk.file("lost"), "").unwrap();
+    let third = desk.show_window(Some(second));
+    assert_ne!(third, second);
+    desk.until_part_like(&mut twin, upper, "everything is there once more");
     assert_eq!(desk.messages(), "");
 }
