@@ -68,6 +68,9 @@
 //!   newest wish wins, a lock is held only to move pointers. What is on the screen is a session,
 //!   coarse or whole, so that it can be edited while the next one is traced; or the whole one while
 //!   some of its pixels are grown again, all others being exact.
+//! * **Two products.** The processor's is the picture: it is exported, compared and kept. A graphics card
+//!   draws whole pictures besides, for the screen alone: its light may differ in the last bits, so that
+//!   some pixels differ by a code value. Nothing waits for it, and a card that is lost takes nothing along.
 //! * **What is kept on disk** is a session's parts and the scene that they were made from; opening it is
 //!   one edit, from that scene to the opened one. Nothing in the file is trusted: lengths, checksums
 //!   and every index are checked first. The thread that shades writes it, in turns; the one that

@@ -1,6 +1,7 @@
 //! Measures a scene: tracing, folding, re-shading, memory, against what the memory allows.
 
 mod classes;
+pub mod gpu;
 mod memory;
 pub mod rays;
 mod sampling;

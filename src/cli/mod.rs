@@ -15,7 +15,7 @@ use std::fmt;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use serde_json::Value;
 
 use crate::bench;
@@ -23,7 +23,8 @@ use crate::film::write::check_writable;
 use crate::scene::energy::overbright;
 use crate::scene::{Scene, path, read, write};
 use crate::session::Options;
-use crate::viewer::{WindowError, measure};
+use crate::shade::gpu::Gpu;
+use crate::viewer::{Graphics, Opening, WindowError, measure};
 
 /// Traces a scene once, keeps every pixel's ray tree, and re-shades it exactly after every edit.
 #[derive(Debug, Parser)]
@@ -35,6 +36,23 @@ pub struct Arguments {
     /// A scene file.
     #[arg(value_parser = parse_scene)]
     scene: Option<PathBuf>,
+    /// What draws the picture in the window; chosen by what there is if not given.
+    #[arg(long, value_enum)]
+    renderer: Option<Renderer>,
+    /// Give the graphics card up when there is such a file, as a driver does that fails: for tests.
+    #[arg(long, value_name = "FILE", hide = true)]
+    lose_graphics: Option<PathBuf>,
+}
+
+/// What draws the picture in the window.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Renderer {
+    /// The graphics card
+    Gpu,
+    /// The processor, shown by the graphics card
+    Cpu,
+    /// The processor, shown by OpenGL
+    Glow,
 }
 
 #[derive(Debug, Subcommand)]
@@ -83,6 +101,9 @@ struct Bench {
     /// hierarchy gains for 10 to 1 000 000 spheres.
     #[arg(long, conflicts_with = "window")]
     rays: bool,
+    /// Measure the matrix product on the graphics card, by the card's own clock.
+    #[arg(long, conflicts_with_all = ["window", "rays"])]
+    gpu: bool,
     /// Write the figures to this file; `-` for standard output.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -137,7 +158,7 @@ pub fn report(failure: &Failure) {
 /// Does what the command line asks for.
 pub fn run(arguments: Arguments) -> Result<(), Failure> {
     match arguments.mode {
-        None => window(arguments.scene),
+        None => window(arguments.scene, arguments.renderer, arguments.lose_graphics),
         Some(Mode::Render(render)) => render.run(),
         Some(Mode::Chart(chart)) => chart.run(),
         Some(Mode::Merge(merge)) => merge.run(),
@@ -151,8 +172,20 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
 }
 
 /// Opens the window; without a display, renders the scene instead.
-fn window(scene: Option<PathBuf>) -> Result<(), Failure> {
-    match crate::viewer::run(scene.clone(), Options::default()) {
+fn window(
+    scene: Option<PathBuf>,
+    renderer: Option<Renderer>,
+    lose_at: Option<PathBuf>,
+) -> Result<(), Failure> {
+    let graphics = match renderer {
+        None => Graphics::Auto,
+        Some(Renderer::Gpu) => Graphics::Gpu,
+        Some(Renderer::Cpu) => Graphics::Cpu,
+        Some(Renderer::Glow) => Graphics::Glow,
+    };
+    let options = Options::default();
+    let opening = Opening { scene: scene.clone(), options, graphics, lose_at };
+    match crate::viewer::run(opening) {
         Ok(()) => Ok(()),
         Err(error @ WindowError::NoDisplay(_)) => demo::run(scene.as_deref(), &error.to_string()),
         Err(error @ WindowError::NoGraphics(_)) => Err(Failure::job(error)),
@@ -188,6 +221,7 @@ impl Bench {
             let options = self.common.apply(&mut scene)?;
             scenes.push((file, scene, options));
         }
+        let gpu = self.gpu.then(Gpu::headless).transpose().map_err(Failure::job)?;
         let mut rows = Vec::new();
         for (file, scene, options) in scenes {
             let name = file.file_stem().map_or_else(String::new, |n| n.to_string_lossy().into());
@@ -197,6 +231,10 @@ impl Bench {
             } else if self.rays {
                 let row = bench::rays::measure(&name, &scene);
                 say(&bench::rays::summary(&row));
+                row
+            } else if let Some(gpu) = &gpu {
+                let row = bench::gpu::measure(&name, scene, options, gpu).map_err(Failure::job)?;
+                say(&bench::gpu::summary(&row));
                 row
             } else {
                 let row = bench::measure(&name, scene, options).map_err(Failure::job)?;

@@ -109,7 +109,8 @@ impl Frontier {
     }
 }
 
-/// A position in the arrays of a [`TransportTile`].
+/// A position in the arrays of a [`TransportTile`]; a graphics card reads it as it lies here.
+#[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BlockStart {
     /// Index into `entries` and `planes`.
@@ -118,7 +119,9 @@ pub struct BlockStart {
     pub single: u32,
 }
 
-/// One coefficient of a term that occurs in few pixels of a block: 8 bytes.
+/// One coefficient of a term that occurs in few pixels of a block: 8 bytes. A graphics card reads it as
+/// it lies here.
+#[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Single {
     /// Index into `terms` in bits 4…31, lane in bits 0…3. Entry 5 at lane 9 is `0x59`.

@@ -1,6 +1,6 @@
 //! The window's state and one turn of its loop.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use eframe::egui::{CentralPanel, Context, Frame, Margin, Panel, Popup, Ui, Vec2, ViewportCommand};
@@ -20,6 +20,7 @@ use super::notice::Notices;
 use super::outline::{Lists, outline_ui};
 use super::picture::PictureView;
 use super::rename::Renaming;
+use super::screen::{Screen, wake};
 use super::status::status_ui;
 use super::style;
 use crate::document::recovery::Recovery;
@@ -53,7 +54,7 @@ pub struct App {
     /// Whether the picture shows its sample map instead of itself.
     sample_map: bool,
     /// Whether the screen shows something else than it should.
-    is_frame_stale: bool,
+    pub(super) is_frame_stale: bool,
     pub(super) chart: ChartPanel,
     pub(super) mass: MassPanel,
     /// The selection whose costs are watched, and how many solids and materials the scene had.
@@ -63,15 +64,22 @@ pub struct App {
     /// Size of the picture's view in points.
     view: Vec2,
     /// The window's title as it was set last.
-    title: String,
+    pub(super) title: String,
+    /// The window that the session wakes.
+    pub(super) waker: Arc<Mutex<Context>>,
+    /// The graphics card that draws the window, if one does.
+    pub(super) screen: Option<Screen>,
+    /// The card was lost: the window goes on in another one.
+    pub(super) is_moving: bool,
 }
 
 impl App {
     /// Opens the scene of `setup`, or the built-in one.
     pub fn new(ctx: &Context, setup: Setup) -> App {
         style::set_up(ctx);
-        let waker = ctx.clone();
-        let live = Live::new(setup.options, move || waker.request_repaint());
+        let waker = Arc::new(Mutex::new(ctx.clone()));
+        let woken = waker.clone();
+        let live = Live::new(setup.options, move || wake(&woken));
         let mut notices = Notices::default();
         let (settings, fault) = Settings::read(&setup.folders.settings_file());
         if let Some(fault) = fault {
@@ -114,6 +122,9 @@ impl App {
             wheel_until: None,
             view: Vec2::ZERO,
             title: String::new(),
+            waker,
+            screen: None,
+            is_moving: false,
         };
         match setup.scene {
             Some(path) => app.open_in_background(ctx, path),
@@ -170,6 +181,7 @@ impl App {
 
     /// Takes pictures and events from the session.
     fn receive(&mut self, ui: &Ui) {
+        self.look_after_screen();
         if let Some(shown) = self.live.take_shown() {
             self.shown = Some(shown);
             self.is_frame_stale = true;
@@ -192,7 +204,12 @@ impl App {
         let size = shown.scene.picture.size;
         match shown.map.as_ref().filter(|_| self.sample_map) {
             Some(map) => self.picture.set_frame(ui, &map.picture(Layout::new(size)), size),
-            None => self.picture.set_frame(ui, &shown.frame, size),
+            None => match (&shown.card, &mut self.screen) {
+                (Some(card), Some(screen)) => {
+                    self.picture.set_card(screen.textures(card), size);
+                }
+                _ => self.picture.set_frame(ui, &shown.frame, size),
+            },
         }
     }
 

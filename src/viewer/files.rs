@@ -362,7 +362,7 @@ impl App {
             self.after_unsaved(ctx, Next::Open(path));
         }
         let close = ctx.input(|i| i.viewport().close_requested());
-        if close && !self.files.leaving && self.document.is_unsaved() {
+        if close && !self.files.leaving && !self.is_moving && self.document.is_unsaved() {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.files.show(Modal::Unsaved(Next::Quit));
         }

@@ -30,12 +30,14 @@ mod paints;
 mod path_field;
 mod picture;
 mod rename;
+mod screen;
 mod start;
 mod status;
 mod style;
 
 pub use app::App;
-pub use start::{WindowError, run};
+pub use screen::Graphics;
+pub use start::{Opening, WindowError, run};
 
 use std::path::PathBuf;
 

@@ -2,12 +2,13 @@
 
 use eframe::egui::{
     Color32, ColorImage, CursorIcon, PointerButton, Pos2, Rect, Response, Role, Sense,
-    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
+    TextureHandle, TextureId, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
 use super::navigate;
 use crate::film::Frame;
 use crate::scene::Camera;
+use crate::shade::gpu::Piece as CardPiece;
 
 /// How large the picture is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,9 +28,26 @@ const ORBIT_SPEED: f64 = 3.0;
 
 /// One part of the picture on the graphics card.
 struct Piece {
-    texture: TextureHandle,
+    texture: Texture,
     /// In pixels of the frame.
     rect: Rect,
+}
+
+/// Where a part of the picture comes from.
+enum Texture {
+    /// Copied from a frame of the processor's.
+    Copied(TextureHandle),
+    /// Drawn by the graphics card itself.
+    Drawn(TextureId),
+}
+
+impl Texture {
+    fn id(&self) -> TextureId {
+        match self {
+            Texture::Copied(handle) => handle.id(),
+            Texture::Drawn(id) => *id,
+        }
+    }
 }
 
 /// The picture and how it is looked at.
@@ -74,26 +92,48 @@ impl PictureView {
 
     /// Takes a new frame of a picture of `size` pixels; a coarse frame has fewer.
     pub(super) fn set_frame(&mut self, ui: &Ui, frame: &Frame, size: [u32; 2]) {
-        let new_size = vec2(size[0] as f32, size[1] as f32);
-        if new_size != self.size {
-            (self.size, self.zoom, self.center) = (new_size, Zoom::Fit, (new_size / 2.0).to_pos2());
-        }
+        self.take_size(size);
         let cut = pieces(frame.size);
         if self.frame_size != frame.size {
             self.frame_size = frame.size;
             self.pieces.clear();
         }
+        self.pieces.retain(|piece| matches!(piece.texture, Texture::Copied(_)));
         for (i, &rect) in cut.iter().enumerate() {
             let image = image(frame, rect);
-            match self.pieces.get_mut(i) {
-                Some(piece) => piece.texture.set(image, options(frame.size == size)),
-                None => {
+            match self.pieces.get_mut(i).map(|piece| &mut piece.texture) {
+                Some(Texture::Copied(handle)) => handle.set(image, options(frame.size == size)),
+                _ => {
                     let name = format!("picture {i}");
                     let sharp = options(frame.size == size);
-                    let texture = ui.ctx().load_texture(name, image, sharp);
+                    let texture = Texture::Copied(ui.ctx().load_texture(name, image, sharp));
                     self.pieces.push(Piece { texture, rect: bounds(rect) });
                 }
             }
+        }
+    }
+
+    /// Takes a picture of `size` pixels that the graphics card has drawn.
+    pub(super) fn set_card(&mut self, textures: &[(TextureId, CardPiece)], size: [u32; 2]) {
+        self.take_size(size);
+        self.frame_size = size;
+        let piece = |&(id, CardPiece { corner, size }): &(TextureId, CardPiece)| {
+            let [[left, top], [width, height]] = [corner, size].map(|n| n.map(|n| n as usize));
+            let rect = bounds([left, top, left + width, top + height]);
+            Piece { texture: Texture::Drawn(id), rect }
+        };
+        self.pieces = textures.iter().map(piece).collect();
+    }
+
+    /// Lets go of everything on the graphics card.
+    pub(super) fn forget_textures(&mut self) {
+        self.pieces.clear();
+    }
+
+    fn take_size(&mut self, size: [u32; 2]) {
+        let new_size = vec2(size[0] as f32, size[1] as f32);
+        if new_size != self.size {
+            (self.size, self.zoom, self.center) = (new_size, Zoom::Fit, (new_size / 2.0).to_pos2());
         }
     }
 

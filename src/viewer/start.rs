@@ -1,15 +1,18 @@
 //! Opens the window: on Vulkan and its kin, else on OpenGL, else it says that there is no display.
 
+use std::cell::RefCell;
 use std::fmt;
 use std::path::PathBuf;
+use std::rc::Rc;
 use std::sync::Arc;
+use std::time::Duration;
 
-use eframe::egui::ViewportBuilder;
+use eframe::egui::{Ui, ViewportBuilder, ViewportCommand};
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use eframe::{NativeOptions, Renderer, wgpu};
 
 use super::dialog::SystemDialogs;
-use super::{App, Folders, Setup};
+use super::{App, Folders, Graphics, Setup};
 use crate::session::Options;
 
 /// Why there is no window.
@@ -32,19 +35,44 @@ impl fmt::Display for WindowError {
     }
 }
 
-/// Opens the window and returns when it is closed.
-pub fn run(scene: Option<PathBuf>, options: Options) -> Result<(), WindowError> {
-    match open(Renderer::Wgpu, scene.clone(), options) {
-        // The same process may try again with another renderer.
-        Err(eframe::Error::Wgpu(first)) => {
-            open(Renderer::Glow, scene, options).map_err(|second| match second {
-                eframe::Error::WinitEventLoop(e) => no_display(&e.to_string()),
-                second => WindowError::NoGraphics(format!("{first}; {second}")),
-            })
-        }
-        Err(eframe::Error::WinitEventLoop(e)) => Err(no_display(&e.to_string())),
-        Err(other) => Err(WindowError::NoGraphics(other.to_string())),
-        Ok(()) => Ok(()),
+/// What the window is opened with.
+#[derive(Clone, Debug)]
+pub struct Opening {
+    /// The scene to open; the built-in one if there is none.
+    pub scene: Option<PathBuf>,
+    /// Threads and memory of its session.
+    pub options: Options,
+    /// What draws it.
+    pub graphics: Graphics,
+    /// Gives the window's graphics card up, as a driver does that fails, when there is such a file,
+    /// and takes the file away: for tests.
+    pub lose_at: Option<PathBuf>,
+}
+
+/// The application, which outlives its window.
+type Kept = Rc<RefCell<Option<App>>>;
+
+/// Opens the window and returns when it is closed. Where wgpu does not draw, OpenGL does; where the
+/// graphics card is lost, the window opens again without asking it for the picture, and, if that is
+/// lost too, by OpenGL.
+pub fn run(mut opening: Opening) -> Result<(), WindowError> {
+    let kept = Kept::default();
+    let mut refused = String::new();
+    loop {
+        let opened = open(&opening, &kept);
+        let lost = kept.borrow().as_ref().is_some_and(App::is_moving);
+        opening.graphics = match (opened, opening.graphics) {
+            (Ok(()), Graphics::Auto | Graphics::Gpu) if lost => Graphics::Cpu,
+            (Ok(()), Graphics::Cpu) if lost => Graphics::Glow,
+            (Ok(()), _) => return Ok(()),
+            // The same process may try again with another renderer.
+            (Err(eframe::Error::Wgpu(cause)), Graphics::Auto | Graphics::Gpu | Graphics::Cpu) => {
+                refused = format!("{cause}; ");
+                Graphics::Glow
+            }
+            (Err(eframe::Error::WinitEventLoop(e)), _) => return Err(no_display(&e.to_string())),
+            (Err(other), _) => return Err(WindowError::NoGraphics(format!("{refused}{other}"))),
+        };
     }
 }
 
@@ -56,7 +84,8 @@ fn no_display(message: &str) -> WindowError {
     WindowError::NoDisplay(line.trim_end_matches('.').to_owned())
 }
 
-fn open(renderer: Renderer, scene: Option<PathBuf>, options: Options) -> eframe::Result {
+fn open(opening: &Opening, kept: &Kept) -> eframe::Result {
+    let Opening { scene, options, graphics, lose_at } = opening.clone();
     let viewport = ViewportBuilder::default()
         .with_title("Rayforest")
         .with_app_id("rayforest")
@@ -64,22 +93,66 @@ fn open(renderer: Renderer, scene: Option<PathBuf>, options: Options) -> eframe:
         .with_min_inner_size([800.0, 500.0]);
     let native = NativeOptions {
         viewport,
-        renderer,
+        renderer: if graphics == Graphics::Glow { Renderer::Glow } else { Renderer::Wgpu },
         wgpu_options: wgpu_options(),
         // The picture reaches the screen as it is.
         dithering: false,
         ..NativeOptions::default()
     };
+    let kept = kept.clone();
     let setup = move |context: &eframe::CreationContext<'_>| {
-        let setup = Setup {
-            options,
-            folders: Folders::of_platform(),
-            dialogs: Box::new(SystemDialogs::default()),
-            scene,
+        let ctx = &context.egui_ctx;
+        let mut app = kept.borrow_mut();
+        let app = match &mut *app {
+            Some(app) => {
+                app.move_to(ctx);
+                app
+            }
+            none => {
+                let dialogs = Box::new(SystemDialogs::default());
+                let folders = Folders::of_platform();
+                none.insert(App::new(ctx, Setup { options, folders, dialogs, scene }))
+            }
         };
-        Ok(Box::new(App::new(&context.egui_ctx, setup)) as Box<dyn eframe::App>)
+        if let Some(state) = &context.wgpu_render_state {
+            app.draw_on(ctx, state, graphics);
+        }
+        Ok(Box::new(Shell { kept: kept.clone(), lose_at }) as Box<dyn eframe::App>)
     };
     eframe::run_native("rayforest", native, Box::new(setup))
+}
+
+/// A window of the application's, as eframe wants it.
+struct Shell {
+    kept: Kept,
+    /// The file at which its card is given up.
+    lose_at: Option<PathBuf>,
+}
+
+impl eframe::App for Shell {
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        let mut kept = self.kept.borrow_mut();
+        let Some(app) = kept.as_mut() else { return };
+        if let Some(file) = &self.lose_at {
+            ui.ctx().request_repaint_after(Duration::from_millis(50));
+            if std::fs::remove_file(file).is_ok() {
+                app.lose_screen();
+            }
+        }
+        app.look_after_screen();
+        match app.is_moving() {
+            // What egui would upload to a card that is gone ends the program: nothing is shown.
+            true => ui.ctx().send_viewport_cmd(ViewportCommand::Close),
+            false => eframe::App::ui(app, ui, frame),
+        }
+    }
+
+    fn on_exit(&mut self, gl: Option<&eframe::glow::Context>) {
+        let mut kept = self.kept.borrow_mut();
+        if let Some(app) = kept.as_mut().filter(|app| !app.is_moving()) {
+            eframe::App::on_exit(app, gl);
+        }
+    }
 }
 
 /// Asks for what the adapter has: the default asks a GL adapter for more than it can give.

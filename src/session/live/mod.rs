@@ -23,6 +23,7 @@ use crate::film::Frame;
 use crate::film::write::Format;
 use crate::forest::counts::SampleMap;
 use crate::scene::Scene;
+use crate::shade::gpu::{Gpu, Picture};
 use board::Board;
 use shader::{Message, Shader};
 
@@ -46,6 +47,9 @@ pub enum Stage {
 pub struct Shown {
     /// The picture; at a coarse stage smaller than `scene.picture.size`.
     pub frame: Arc<Frame>,
+    /// The same on the graphics card that draws whole pictures, if one does: other in the last bits of
+    /// its light, so that some pixels differ by a code value.
+    pub card: Option<Arc<Picture>>,
     /// What it shows.
     pub scene: Arc<Scene>,
     /// How fine it is.
@@ -227,6 +231,12 @@ impl Live {
     /// are missing that only the frontier of the whole picture knows.
     pub fn costs(&self) -> Arc<BTreeMap<String, Cost>> {
         self.board.costs()
+    }
+
+    /// Draws whole pictures on a graphics card too from now on, or no longer. A card that fails is
+    /// told of once, and not used any more.
+    pub fn draw_on(&self, gpu: Option<Gpu>) {
+        self.order(Message::DrawOn(gpu));
     }
 
     /// Writes a picture of the newest wanted scene, after its trace if that still runs.

@@ -1,5 +1,6 @@
 //! The thread that owns the pictures: takes wishes, shades what needs no ray, sends off the rest.
 
+mod card;
 mod exports;
 mod keep;
 mod mend;
@@ -25,6 +26,7 @@ use crate::scene::Scene;
 use crate::scene::change::Change;
 use crate::session::regrow::{Patch, Regrow};
 use crate::session::{Class, EditReport, Options, Session, Work};
+use crate::shade::gpu::{Gpu, Product};
 use keep::Keeping;
 
 /// What the shader is told, by the window and by the other threads.
@@ -41,6 +43,7 @@ pub(super) enum Message {
     Cancel(Target),
     Resume,
     Watch(Vec<String>),
+    DrawOn(Option<Gpu>),
     Export(Export),
     /// A stage before the whole picture.
     Staged {
@@ -162,6 +165,8 @@ pub(super) struct Shader {
     pool: Arc<ThreadPool>,
     wanted: Option<Arc<Scene>>,
     whole: Option<Session>,
+    /// Draws the whole picture on a graphics card too.
+    product: Option<Product>,
     /// Shown instead of the whole picture while there is one.
     preview: Option<Preview>,
     job: Option<Running>,
@@ -206,6 +211,7 @@ impl Shader {
             pool: pool(options),
             wanted: None,
             whole: None,
+            product: None,
             preview: None,
             job: None,
             jobs: 0,
@@ -284,6 +290,7 @@ impl Shader {
             Message::Cancel(target) => self.cancel(target),
             Message::Resume => self.resume(),
             Message::Watch(paths) => self.badges.watch(paths),
+            Message::DrawOn(gpu) => self.draw_on(gpu),
             Message::Export(export) => self.export(export),
             Message::Staged { id, stage, divisor, session } => {
                 self.staged(id, stage, divisor, *session);

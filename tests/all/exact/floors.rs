@@ -6,7 +6,7 @@ const MOST_LINES: usize = 600;
 
 /// Words that only some files may use, by the start of the file's path below `src`.
 const ENTRANCES: [(&str, &[&str]); 5] = [
-    ("wgpu", &["shade/gpu.rs", "viewer"]),
+    ("wgpu", &["shade/gpu.rs", "shade/gpu/", "viewer"]),
     ("egui", &["viewer"]),
     ("eframe", &["viewer"]),
     ("rfd", &["viewer"]),

@@ -6,6 +6,7 @@ mod cache;
 mod classes;
 mod comes_alive;
 mod floors;
+mod gpu;
 mod histories;
 mod lamps;
 mod memory;

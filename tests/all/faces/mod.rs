@@ -3,6 +3,7 @@
 mod bad_input;
 mod bad_solids;
 mod cache;
+mod card;
 mod chart;
 mod command_line;
 mod convert;

@@ -16,11 +16,15 @@ impl Shader {
         if let Some((frame, scene, geometry)) = self.mending().map(|mending| {
             (mending.frame(), mending.scene.clone(), mending.regrow.geometry.clone())
         }) {
-            self.board.show(Shown { frame, scene, stage: Stage::Mending, map: None }, geometry);
+            self.board.show(
+                Shown { frame, card: None, scene, stage: Stage::Mending, map: None },
+                geometry,
+            );
             self.badges.renew(Stage::Mending, &self.board);
             self.report();
             return self.board.wake();
         }
+        let card = if self.preview.is_none() { self.on_card() } else { None };
         let (session, scene, stage) = match (&self.preview, &self.whole) {
             (Some(p), _) => (&p.session, p.scene.clone(), p.stage),
             (None, Some(whole)) => (whole, whole.shared_scene(), Stage::Whole),
@@ -28,6 +32,7 @@ impl Shader {
         };
         let shown = Shown {
             frame: session.shared_frame(),
+            card,
             scene,
             stage,
             map: session.sample_map().filter(|_| stage == Stage::Whole),

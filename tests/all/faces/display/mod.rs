@@ -68,6 +68,8 @@ struct Desk {
     folder: tempfile::TempDir,
     /// More variables for the program.
     variables: Vec<(&'static str, &'static str)>,
+    /// Arguments before the scene.
+    arguments: Vec<&'static str>,
 }
 
 impl Desk {
@@ -80,7 +82,8 @@ impl Desk {
         let private = std::fs::Permissions::from_mode(0o700);
         std::fs::set_permissions(folder.path().join("run"), private).unwrap();
         std::fs::write(folder.path().join("scene.toml"), COMMENTED).unwrap();
-        Desk { program: None, server: Server::start(size), folder, variables: Vec::new() }
+        let (variables, arguments) = (Vec::new(), Vec::new());
+        Desk { program: None, server: Server::start(size), folder, variables, arguments }
     }
 
     /// A desk where the program shows `scene.toml` as its twin does.
@@ -126,7 +129,7 @@ impl Desk {
     /// Starts the program with `scene.toml` and lets its window fill the screen.
     fn start(&mut self) {
         let mut command = Command::new(env!("CARGO_BIN_EXE_rayforest"));
-        command.arg("scene.toml").current_dir(self.folder.path());
+        command.args(&self.arguments).arg("scene.toml").current_dir(self.folder.path());
         // neither a portal nor zenity: no dialog service answers
         for name in ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DBUS_SESSION_BUS_ADDRESS"] {
             command.env_remove(name);
@@ -140,9 +143,14 @@ impl Desk {
         command.stdout(File::create(self.file("results")).unwrap());
         command.stderr(File::create(self.file("messages")).unwrap());
         self.program = Some(Ending(command.spawn().unwrap()));
+        self.show_window(None);
+    }
+
+    /// Waits for a window that is not `known`, lets it fill the screen, and says which it is.
+    fn show_window(&mut self, known: Option<u32>) -> u32 {
         let start = Instant::now();
         let window = loop {
-            if let Some(window) = self.server.window() {
+            if let Some(window) = self.server.window().filter(|window| Some(*window) != known) {
                 break window;
             }
             self.check_alive("the window opens");
@@ -151,6 +159,7 @@ impl Desk {
         };
         self.server.show_whole(window);
         self.point(REST);
+        window
     }
 
     /// What the program wrote to standard error.

@@ -1,6 +1,7 @@
 //! The window without a display, driven by the accessible names of its widgets.
 
 mod camera;
+mod card;
 mod chart;
 mod costs;
 mod edits;

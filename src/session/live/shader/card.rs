@@ -1,0 +1,37 @@
+//! The whole picture on a graphics card, beside that of the processor.
+
+use std::sync::Arc;
+
+use super::Shader;
+use crate::math::exposure_factor;
+use crate::session::live::{Event, guarded};
+use crate::shade::gpu::{Gpu, GpuError, Picture, Product};
+
+impl Shader {
+    /// Draws whole pictures by a card from now on, or no longer.
+    pub(super) fn draw_on(&mut self, gpu: Option<Gpu>) {
+        self.product = gpu.map(Product::new);
+        self.show();
+    }
+
+    /// The whole picture as a card draws it. A card that fails is not asked again: the processor's
+    /// picture is there.
+    pub(super) fn on_card(&mut self) -> Option<Arc<Picture>> {
+        let (product, whole) = (self.product.as_mut()?, self.whole.as_ref()?);
+        let gain = exposure_factor(whole.scene().picture.exposure);
+        let (transport, values) = (whole.transport(), &whole.terms().values);
+        let cause = match guarded(|| product.frame(transport, values, gain)) {
+            Ok(Ok(picture)) => return Some(picture),
+            Ok(Err(error)) => error,
+            Err(text) => GpuError::Failed(text),
+        };
+        self.product = None;
+        if cause.is_lost() {
+            // Whoever the card belongs to knows, and says more.
+            return None;
+        }
+        let text = format!("{cause}: the processor draws the picture from now on");
+        self.board.tell(Event::Failed(text));
+        None
+    }
+}
