@@ -7,6 +7,7 @@ mod classes;
 mod comes_alive;
 mod floors;
 mod histories;
+mod inspected;
 mod lamps;
 mod memory;
 mod parts;
