@@ -13,7 +13,7 @@ use super::inspector::Selection;
 use super::pixel_bars::bars_ui;
 use super::pixel_lines::{Line, Target, lines};
 use super::pixel_rows::rows_ui;
-use crate::color::srgb_byte;
+use crate::film::develop::code8;
 use crate::math::exposure_factor;
 use crate::scene::Scene;
 use crate::session::inspect::{Bars, Met, PixelTree, TreeNode, bars, merged};
@@ -86,6 +86,7 @@ impl PixelPanel {
         [width, height]: [u32; 2],
     ) {
         let pixel = |[x, y]: [f64; 2]| [(x as u32).min(width - 1), (y as u32).min(height - 1)];
+        self.pinned = self.pinned.filter(|[x, y]| *x < width && *y < height);
         self.hovered = hovered.map(pixel).filter(|_| self.open);
         if let Some(clicked) = clicked.filter(|_| self.open) {
             self.pinned = Some(pixel(clicked));
@@ -134,9 +135,9 @@ impl PixelPanel {
         let mut outcome = PixelOutcome::default();
         ui.horizontal(|ui| self.head_ui(ui, &mut outcome));
         let size = ui.available_size();
-        let [left, right] = [230.0, (size.x * 0.24).clamp(230.0, 380.0)];
+        let [left, right] = [230.0, (size.x * 0.24).clamp(230.0, 460.0)];
         let spaces = 2.0 * (ui.spacing().item_spacing.x * 2.0 + 6.0);
-        let middle = (size.x - left - right - spaces).max(200.0);
+        let middle = (size.x - left - right - spaces).clamp(200.0, 760.0);
         ui.horizontal_top(|ui| {
             column_ui(ui, "pixel values", left, |ui| self.values_ui(ui, known));
             ui.separator();
@@ -242,9 +243,8 @@ fn column_ui(ui: &mut Ui, name: &str, width: f32, body: impl FnOnce(&mut Ui)) {
 }
 
 /// A pixel's colour as bytes, as it is shown and written.
-pub(super) fn shown_bytes(tree: &PixelTree) -> [u8; 3] {
-    let gain = exposure_factor(tree.scene.picture.exposure);
-    (tree.light * gain).0.map(srgb_byte)
+fn shown_bytes(tree: &PixelTree) -> [u8; 3] {
+    code8(tree.light, exposure_factor(tree.scene.picture.exposure))
 }
 
 fn numbers_ui(ui: &mut Ui, tree: &PixelTree) {
@@ -270,12 +270,10 @@ fn numbers_ui(ui: &mut Ui, tree: &PixelTree) {
         None => rows.push(("object", "background".into())),
     }
     rows.push(("samples", samples.len().to_string()));
-    ui.horizontal(|ui| {
-        let (rect, _) = ui.allocate_exact_size(vec2(44.0, 20.0), Sense::hover());
-        ui.painter().rect_filled(rect, 2.0, Color32::from_rgb(r, g, b));
-        ui.weak("as shown");
-    });
-    Grid::new("pixel numbers").num_columns(2).show(ui, |ui| {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width() - 12.0, 16.0), Sense::hover());
+    ui.painter().rect_filled(rect, 2.0, Color32::from_rgb(r, g, b));
+    let grid = Grid::new("pixel numbers").num_columns(2).min_row_height(16.0);
+    grid.spacing(vec2(8.0, 3.0)).show(ui, |ui| {
         for (name, value) in rows {
             ui.weak(name);
             ui.monospace(value);

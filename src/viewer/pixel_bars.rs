@@ -1,13 +1,11 @@
 //! Why a pixel has its colour: bars of its light by material, by light and by bounce.
 
-use eframe::egui::{
-    Align2, Button, Color32, FontId, Rect, RichText, Sense, TextWrapMode, Ui, vec2,
-};
+use eframe::egui::{Align2, Button, Color32, FontId, Rect, RichText, Ui, vec2};
 
 use super::outline::{lamp, shown, swatch};
 use super::pixel::Face;
 use super::pixel_lines::{Target, sky};
-use super::pixel_rows::{bar_at, part_of, percent, swatch_ui};
+use super::pixel_rows::{bar_at, named_ui, part_of, percent, swatch_ui};
 use crate::session::inspect::{Bars, Share, Source};
 
 /// Most bars of one kind: the rest is one more.
@@ -61,6 +59,7 @@ pub(super) fn bars_ui(ui: &mut Ui, face: &Face) -> Option<Target> {
         ("By bounce", bounces.collect()),
     ];
     let mut clicked = None;
+    ui.spacing_mut().item_spacing.y = 1.0;
     for (title, bars) in lists {
         ui.label(RichText::new(title).strong());
         for bar in bars.iter().take(MOST) {
@@ -92,22 +91,14 @@ fn bar_ui(ui: &mut Ui, list: &str, bar: &Bar, whole: f64) -> bool {
         let right = ui.min_rect().left() + ui.available_width();
         swatch_ui(ui, bar.color);
         let room = (right - LONG - NUMBER - 12.0 - ui.cursor().left()).max(40.0);
-        let height = ui.spacing().interact_size.y;
-        let (place, _) = ui.allocate_exact_size(vec2(room, height), Sense::hover());
         let part = part_of(bar.share, whole);
-        let clicked = match bar.target {
-            Some(_) => {
-                let button = Button::new(&bar.name).frame(false).wrap_mode(TextWrapMode::Truncate);
-                let response = ui.put(place, button);
-                let name = format!("{list}: {}", bar.name);
-                let about = "What it adds to the pixel. A click shows its parameters";
-                response.on_hover_text(about).accessible_name(name).clicked()
-            }
-            None => {
-                ui.put(place, eframe::egui::Label::new(&bar.name).truncate());
-                false
-            }
+        let (place, response) = named_ui(ui, room, Button::selectable(false, &bar.name));
+        let about = match bar.target {
+            Some(_) => "What it adds to the pixel. A click shows its parameters",
+            None => "What it adds to the pixel",
         };
+        let name = format!("{list}: {}", bar.name);
+        let clicked = response.on_hover_text(about).accessible_name(name).clicked();
         let number = [right - LONG - 6.0, place.center().y];
         let (font, color) = (FontId::monospace(11.5), ui.visuals().text_color());
         ui.painter().text(number.into(), Align2::RIGHT_CENTER, percent(part), font, color);

@@ -1,8 +1,8 @@
 //! A pixel's tree as indented lines: swatch, name, weight, and a bar of the share.
 
 use eframe::egui::{
-    Align2, Button, Color32, FontId, Rect, ScrollArea, Sense, Stroke, TextStyle, TextWrapMode, Ui,
-    vec2,
+    Align, Align2, Button, Color32, FontId, Layout, Rect, Response, ScrollArea, Sense, Stroke,
+    StrokeKind, TextStyle, TextWrapMode, Ui, UiBuilder, vec2,
 };
 
 use super::inspector::Selection;
@@ -36,6 +36,7 @@ pub(super) fn rows_ui(
     selection: Selection,
 ) -> RowsOutcome {
     let mut outcome = RowsOutcome::default();
+    ui.spacing_mut().item_spacing.y = 1.0;
     let width = ui.available_width();
     columns_ui(ui, width);
     let height = ui.spacing().interact_size.y;
@@ -89,15 +90,24 @@ fn row_ui(ui: &mut Ui, line: &Line, whole: f64, selected: bool) -> (bool, bool) 
         swatch_ui(ui, line.color);
         let right = left + full;
         let room = right - BAR - 2.0 * NUMBER - 18.0 - ui.cursor().left();
-        let button = Button::selectable(selected, &line.text).wrap_mode(TextWrapMode::Truncate);
-        let height = ui.spacing().interact_size.y;
-        let (place, _) = ui.allocate_exact_size(vec2(room.max(60.0), height), Sense::hover());
-        let response = ui.put(Rect::from_min_size(place.min, vec2(place.width(), height)), button);
+        let button = Button::selectable(selected, &line.text);
+        let (place, response) = named_ui(ui, room.max(60.0), button);
         let response = response.on_hover_text(&line.about);
         numbers(ui, line, whole, (right, place.center().y));
-        (response.clicked(), response.hovered() || response.has_focus())
+        let line = place.with_max_x(right).expand2(vec2(0.0, 1.0));
+        let over = ui.rect_contains_pointer(line) || response.hovered() || response.has_focus();
+        (response.clicked(), over)
     })
     .inner
+}
+
+/// What a line or a bar is called, at the left end of a space of this width.
+pub(super) fn named_ui(ui: &mut Ui, width: f32, button: Button<'_>) -> (Rect, Response) {
+    let height = ui.spacing().interact_size.y;
+    let (place, _) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
+    let from_left = Layout::left_to_right(Align::Center);
+    let mut inside = ui.new_child(UiBuilder::new().max_rect(place).layout(from_left));
+    (place, inside.add(button.wrap_mode(TextWrapMode::Truncate)))
 }
 
 /// Weight, share and bar, at the right end of a line.
@@ -137,12 +147,15 @@ pub(super) fn bar_at(ui: &Ui, rect: Rect, part: f64) {
     painter.rect_filled(filled, 2.0, Color32::from_rgb(0x3a, 0x86, 0xc8));
 }
 
-/// A small square of colour.
+/// A small square of colour; the place of one, of what has none.
 pub(super) fn swatch_ui(ui: &mut Ui, color: Color32) {
     let height = ui.spacing().interact_size.y;
     let (rect, _) = ui.allocate_exact_size(vec2(10.0, height), Sense::hover());
+    if color == Color32::TRANSPARENT {
+        return;
+    }
     let square = Rect::from_center_size(rect.center(), vec2(10.0, 10.0));
     ui.painter().rect_filled(square, 2.0, color);
     let outline = Stroke::new(1.0, ui.visuals().weak_text_color());
-    ui.painter().rect_stroke(square, 2.0, outline, eframe::egui::StrokeKind::Inside);
+    ui.painter().rect_stroke(square, 2.0, outline, StrokeKind::Inside);
 }

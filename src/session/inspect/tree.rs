@@ -288,7 +288,19 @@ impl TreeNode {
 
     /// Adds a node that met the same on the same way.
     fn join(&mut self, other: TreeNode) {
-        let TreeNode { way: _, met: _, hits, weight, itself, lamps, share, below, .. } = other;
+        // They are the same, or, of where it lies, the first one's stay.
+        let TreeNode {
+            way: _,
+            met: _,
+            hits,
+            point: _,
+            distance: _,
+            weight,
+            itself,
+            lamps,
+            share,
+            below,
+        } = other;
         self.hits += hits;
         self.weight = self.weight + weight;
         self.itself += itself;

@@ -160,11 +160,15 @@ impl Board {
         self.face().costs.clone()
     }
 
-    /// The next wish interrupts what is begun.
+    /// The next wish, or other wanted pixels, interrupt what is begun.
     pub(super) fn begin_inspection(&self) -> Arc<Progress> {
         let begun = Arc::new(Progress::default());
         self.face().inspection = begun.clone();
         begun
+    }
+
+    pub(super) fn stop_inspection(&self) {
+        self.face().inspection.cancel();
     }
 
     pub(super) fn show_pixels(&self, pixels: BTreeMap<[u32; 2], Inspected>) {

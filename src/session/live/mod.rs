@@ -236,6 +236,7 @@ impl Live {
     /// Names the pixels that are to be taken apart, now and after every edit: once the picture is
     /// whole, and while nothing else is to be done.
     pub fn inspect(&self, pixels: Vec<[u32; 2]>) {
+        self.board.stop_inspection();
         self.order(Message::Inspect(pixels));
     }
 

@@ -1,5 +1,6 @@
 //! The live session, held to the session: same bytes, fewer rays, nothing that hangs.
 
+mod inspected;
 mod keep;
 
 use std::path::{Path, PathBuf};

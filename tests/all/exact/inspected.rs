@@ -1,6 +1,7 @@
 //! A pixel taken apart: the shares of its nodes add up to its colour, in bits, in every grouping.
 
 use rayforest::color::Rgb;
+use rayforest::scene::Material;
 use rayforest::session::inspect::{Bars, Met, PixelTree, Share, TreeNode, bars, merged};
 
 use super::*;
@@ -78,6 +79,17 @@ fn shares_follow_edits_and_need_no_kept_tree() {
         session.edit(edited.clone(), &Progress::default()).unwrap();
         hold(&session, &format!("{path} = {value}"));
     }
+    // Indices change, and places in the list of factors get gaps.
+    let mut moved = edited.clone();
+    moved.lights.remove(0);
+    session.edit(moved.clone(), &Progress::default()).unwrap();
+    hold(&session, "a light is gone");
+    moved.materials.insert(0, Material::new("spare"));
+    moved.solids.iter_mut().for_each(|solid| solid.material += 1);
+    session.edit(moved, &Progress::default()).unwrap();
+    hold(&session, "a material came first");
+    session.edit(edited.clone(), &Progress::default()).unwrap();
+    hold(&session, "both as before");
     let whole = open(&edited, 2);
     let memory = whole.kept_bytes() - whole.forest().bytes() as u64;
     let poor = Options { threads: 2, memory };
