@@ -52,6 +52,9 @@
 //! * **Order.** Terms are numbered by their factors along the path, never by discovery; a pixel is
 //!   summed from +0 in that order, its planes first, then its single coefficients; vector lanes run
 //!   across pixels. Thread count, tile order, released memory and edits therefore change no bit.
+//! * **A pixel can be taken apart.** A term's share is what shading's running sum grows by as the term is
+//!   added, so that shares add up to the picture's bits, rounding included; every sample's part of it
+//!   follows from that sample folded alone, by the one folder. Nothing of shading is written twice.
 //! * **Tiles stand alone.** A tile's light depends on the scene only: parts of a still, traced apart,
 //!   merge bit for bit.
 //! * **Bits.** No fused multiply-add, no power, logarithm or sine of the platform in what reaches a

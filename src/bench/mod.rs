@@ -3,6 +3,7 @@
 mod classes;
 pub mod gpu;
 mod memory;
+mod pixels;
 pub mod rays;
 mod sampling;
 pub mod solvers;
@@ -72,6 +73,7 @@ pub fn measure(name: &str, scene: Scene, options: Options) -> Result<Value, Trac
         reshade_p99: shading.eight_bit.p99,
     };
     session.trace_again(&progress)?;
+    row["inspect"] = pixels::measure(&session)?;
     row["sampling"] = sampling::measure(&session, &report)?;
     row["classes"] = classes::measure(&mut session, &by)?;
     row["peak_rss_mb"] = json!(memory::peak_resident_mb());
@@ -105,6 +107,7 @@ pub fn summary(row: &Value) -> String {
         number("/peak_rss_mb"),
     ) + &classes::summary(&row["classes"])
         + &sampling::summary(&row["sampling"])
+        + &pixels::summary(&row["inspect"])
 }
 
 fn traced(

@@ -6,8 +6,10 @@ use clap::Args;
 
 use super::{Common, Failure, print, read_scene};
 use crate::color::Rgb;
+use crate::film::develop::code8;
 use crate::forest::tree::Branch;
 use crate::geometry::Geometry;
+use crate::math::exposure_factor;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::session::inspect::{Base, InspectedLight, InspectedNode, Inspection, pixel};
@@ -55,6 +57,9 @@ impl Inspect {
 }
 
 fn print_terms(scene: &Scene, inspection: &Inspection) {
+    let [r, g, b] = code8(inspection.light, exposure_factor(scene.picture.exposure));
+    let samples = inspection.samples.len();
+    print(&format!("shown: sRGB {r} {g} {b}, #{r:02X}{g:02X}{b:02X}; {samples} samples"));
     print("terms: coefficient, light added (red green blue), share of the pixel, product");
     let whole = luminance(inspection.light);
     for term in &inspection.terms {
@@ -72,10 +77,11 @@ fn print_terms(scene: &Scene, inspection: &Inspection) {
 
 fn print_node(scene: &Scene, node: &InspectedNode, by: &str, depth: usize) {
     let indent = "  ".repeat(depth);
+    let [x, y, z] = node.point.to_array();
     let (solid, material) =
         (&scene.solids[node.solid as usize], &scene.materials[node.material as usize]);
     print(&format!(
-        "{indent}{by} → solid {}, material {}, slot {}, distance {:.6}",
+        "{indent}{by} → solid {}, material {}, slot {}, distance {:.6}, at {x:.6} {y:.6} {z:.6}",
         solid.name, material.name, node.slot, node.t
     ));
     for light in &node.lights {

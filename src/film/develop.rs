@@ -2,7 +2,7 @@
 
 use super::layout::{BLOCK, LANES, TILE};
 use super::{Film, FilmBlock, Frame};
-use crate::color::{Rgb, srgb_code};
+use crate::color::{Rgb, srgb_byte, srgb_code};
 use crate::math::exposure_factor;
 
 /// A row of tiles of a [`Frame`]: the pixel rows that its tiles cover, and no more.
@@ -75,6 +75,11 @@ pub fn frame(film: &Film, exposure: f32) -> Frame {
     frame
 }
 
+/// One pixel as 8-bit sRGB code values: the bytes that are shown and written.
+pub fn code8(light: Rgb, gain: f32) -> [u8; 3] {
+    light.0.map(|c| srgb_byte(c * gain))
+}
+
 /// One pixel as 16-bit sRGB code values, for 16-bit files.
 pub fn code16(light: Rgb, gain: f32) -> [u16; 3] {
     light.0.map(|c| (f64::from(srgb_code(c * gain)) * 257.0).round() as u16)
@@ -84,7 +89,6 @@ pub fn code16(light: Rgb, gain: f32) -> [u16; 3] {
 mod tests {
     use super::super::layout::Layout;
     use super::*;
-    use crate::color::srgb_byte;
 
     #[test]
     fn every_pixel_lands_in_its_place_at_ragged_sizes() {
@@ -103,7 +107,8 @@ mod tests {
             let frame = frame(&film, 1.0);
             for y in 0..size[1] {
                 for x in 0..size[0] {
-                    let [r, g, b] = [0, 1, 2].map(|c| srgb_byte(2.0 * value(x, y, c)));
+                    let light = Rgb([0, 1, 2].map(|c| value(x, y, c)));
+                    let [r, g, b] = code8(light, 2.0);
                     assert_eq!(frame.pixel([x, y]), [r, g, b, 255], "pixel {x} {y} of {size:?}");
                 }
             }

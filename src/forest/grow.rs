@@ -246,7 +246,7 @@ impl<'a> Grower<'a> {
     }
 
     #[inline(always)]
-    fn pixel<S: Simd, K: Sink>(
+    pub(super) fn pixel<S: Simd, K: Sink>(
         &self,
         simd: S,
         worker: &mut Worker,
@@ -404,6 +404,7 @@ impl<'a> Grower<'a> {
             fresnel,
         };
         let name = sink.node(node);
+        sink.point(at.point);
         if let Some(tone) = tone {
             sink.tone(tone);
         }

@@ -11,6 +11,7 @@ pub mod grow;
 pub mod kept;
 mod lamp;
 pub mod lobe;
+pub mod located;
 mod media;
 mod pending;
 mod rays;

@@ -1,5 +1,7 @@
 //! What receives trees as they are grown.
 
+use glam::DVec3;
+
 use super::tree::{LightHit, Node};
 use crate::geometry::Tone;
 
@@ -25,6 +27,9 @@ pub trait Sink {
     fn sample(&mut self, hit: bool);
     /// A node; gives the name by which [`Sink::missed`] refers to it.
     fn node(&mut self, node: Node) -> u32;
+    /// Where the last node lies, in world space: of no use to most.
+    #[inline(always)]
+    fn point(&mut self, _: DVec3) {}
     /// What colours the last node in place of its slot.
     fn tone(&mut self, tone: Tone);
     /// The ray of this branch of a node left the scene.

@@ -1,5 +1,13 @@
 //! One pixel in detail: its ray trees, its terms, and each term's share of its light.
 
+mod shares;
+mod tree;
+
+pub use shares::Share;
+pub use tree::{Bars, LampShare, Met, PixelTree, Source, TreeNode, Way, bars, merged};
+
+use glam::DVec3;
+
 use super::pilots::Pilots;
 use super::trace::TraceError;
 use crate::color::Rgb;
@@ -7,6 +15,7 @@ use crate::film::layout::{LANES, Layout, TILE_BLOCKS};
 use crate::film::pixels::PixelSet;
 use crate::fold::{Folder, Names};
 use crate::forest::grow::Grower;
+use crate::forest::located::Located;
 use crate::forest::tree::{BEHIND, BLOCKED, Branch, Reader, TileTrees};
 use crate::geometry::Geometry;
 use crate::progress::Progress;
@@ -37,6 +46,8 @@ pub struct TermShare {
 
 /// A node with its branches.
 pub struct InspectedNode {
+    /// Where it lies, in world space.
+    pub point: DVec3,
     /// Distance along the ray.
     pub t: f64,
     /// Index of the solid.
@@ -53,6 +64,8 @@ pub struct InspectedNode {
     pub transmitted: (Branch, Option<Box<InspectedNode>>),
     /// Whether the mirror ray carries the factor of total reflection.
     pub total: bool,
+    /// Geometric weights of the mirror and the refracted ray.
+    pub weights: [f32; 2],
 }
 
 /// A light and what its shadow ray met.
@@ -103,19 +116,19 @@ pub fn pixel(
     block.add(place.tile, &lanes);
     let pilots = Pilots::trace((scene, &block), geometry, None, 0, progress)?;
     let grower = Grower::new(scene, geometry).with_map(pilots.map.as_deref());
-    let mut trees = TileTrees::default();
+    let mut located = Located::default();
     let at = (place.tile, place.block);
-    let grown = grower.block(&mut grower.worker(), at, &mut trees, MOST_BYTES, progress);
+    let grown = grower.block(&mut grower.worker(), at, &mut located, MOST_BYTES, progress);
     grown.map_err(|stop| TraceError::of(stop, MOST_BYTES))?;
     let counts = grower.counts(at);
     let before = counts[..place.lane].iter().sum::<u32>();
-    let mut walk = Walk { reader: trees.read(0), geometry, scene };
+    let mut walk = Walk::new(&located, geometry, scene);
     for _ in 0..before {
         walk.sample();
     }
     let samples_trees = (0..counts[place.lane]).map(|_| walk.sample()).collect();
     let names = Names::new(geometry.materials(), scene.lights.len());
-    let (terms, light) = terms(scene, &trees, &counts, place.lane, &names);
+    let (terms, light) = terms(scene, &located.trees, &counts, place.lane, &names);
     Ok(Inspection { light, samples: samples_trees, terms })
 }
 
@@ -157,11 +170,18 @@ fn terms(
 /// Reads nodes in preorder and builds them into trees.
 struct Walk<'a> {
     reader: Reader<'a>,
+    points: std::slice::Iter<'a, DVec3>,
     geometry: &'a Geometry,
     scene: &'a Scene,
 }
 
-impl Walk<'_> {
+impl<'a> Walk<'a> {
+    /// Begins at the first sample.
+    fn new(located: &'a Located, geometry: &'a Geometry, scene: &'a Scene) -> Walk<'a> {
+        let Located { trees, points } = located;
+        Walk { reader: trees.read(0), points: points.iter(), geometry, scene }
+    }
+
     /// The tree of the next sample, if its ray met the scene.
     fn sample(&mut self) -> Option<InspectedNode> {
         self.reader.sample().then(|| self.node())
@@ -170,10 +190,12 @@ impl Walk<'_> {
     /// The next tree. A tree is at most 64 deep, and so is the recursion.
     fn node(&mut self) -> InspectedNode {
         let node = self.reader.node();
+        let point = *self.points.next().expect("a point of every node");
         let lights = (0..node.lights).filter_map(|_| self.light(node.material)).collect();
         let reflected = self.branch(node.ends.reflected());
         let transmitted = self.branch(node.ends.transmitted());
         InspectedNode {
+            point,
             t: node.t,
             solid: self.geometry.solid(node.primitive),
             material: node.material,
@@ -182,6 +204,7 @@ impl Walk<'_> {
             reflected,
             transmitted,
             total: node.ends.total(),
+            weights: node.weights(),
         }
     }
 

@@ -19,6 +19,7 @@ use super::navigate::focused;
 use super::notice::Notices;
 use super::outline::{Lists, outline_ui};
 use super::picture::PictureView;
+use super::pixel::PixelPanel;
 use super::rename::Renaming;
 use super::screen::{Screen, wake};
 use super::status::status_ui;
@@ -57,6 +58,7 @@ pub struct App {
     pub(super) is_frame_stale: bool,
     pub(super) chart: ChartPanel,
     pub(super) mass: MassPanel,
+    pub(super) pixel: PixelPanel,
     /// The selection whose costs are watched, and how many solids and materials the scene had.
     watched: Option<Vec<String>>,
     /// A gesture of the wheel lasts until then.
@@ -118,6 +120,7 @@ impl App {
             is_frame_stale: false,
             chart: ChartPanel::new(setup.options),
             mass: MassPanel::new(setup.options),
+            pixel: PixelPanel::default(),
             watched: None,
             wheel_until: None,
             view: Vec2::ZERO,
@@ -146,6 +149,7 @@ impl App {
         let step = self.mixer_ui(ui, &mut edited, &mut changed);
         let step = step.or(self.chart_ui(ui, &mut edited, &mut changed));
         self.mass_ui(ui);
+        self.pixel_ui(ui);
         let outcome = self.panels(ui, &mut edited, &mut commands);
         let pick = outcome.pick.clone();
         changed |= self.apply_outcome(outcome, &mut edited);
@@ -165,6 +169,7 @@ impl App {
             self.run(&ctx, command);
         }
         self.watch_costs();
+        self.ask_pixels();
         self.autosave(&ctx);
         self.set_title(&ctx);
     }
@@ -258,6 +263,7 @@ impl App {
                 sample_map: self.sample_map,
                 chart: self.chart.open,
                 mass: self.mass.open,
+                pixel: self.pixel.open,
                 subject: self.subject(),
                 keep: self.keep_offer(),
             };
@@ -293,7 +299,8 @@ impl App {
         outcome.step
     }
 
-    fn select(&mut self, selection: Option<Selection>) {
+    /// Selects what was clicked, if anything was.
+    pub(super) fn select(&mut self, selection: Option<Selection>) {
         if let Some(selection) = selection {
             self.selection = selection;
         }
@@ -349,6 +356,7 @@ impl App {
                 let costs = self.live.costs();
                 let stage = Stage::new(edited, [place, view], self.selection, &costs);
                 let handled = self.handles.ui(ui, &stage, &mut edited.lights);
+                self.pixel.mark_ui(ui, [place, view], edited.picture.size);
                 self.notices.ui(ui);
                 (outcome, handled)
             })
@@ -358,6 +366,7 @@ impl App {
         if outcome.pointer.is_some() {
             self.live.look_at(outcome.pointer);
         }
+        self.pixel.look(outcome.hovered, outcome.clicked, edited.picture.size);
         let mut focused = false;
         if let Some(point) = outcome.clicked {
             match self.picture.focus_tool {
@@ -453,6 +462,7 @@ impl App {
             Command::SampleMap => self.toggle_sample_map(),
             Command::Chart => self.chart.open = !self.chart.open,
             Command::Mass => self.mass.open = !self.mass.open,
+            Command::Pixel => self.pixel.open = !self.pixel.open,
             Command::AddLight
             | Command::AddMaterial
             | Command::Duplicate

@@ -59,6 +59,8 @@ pub(super) enum Command {
     Chart,
     /// Whether the panel of mass properties shows.
     Mass,
+    /// Whether the panel of a pixel and its ray tree shows.
+    Pixel,
     /// Whether the picture shows how many samples its pixels have.
     SampleMap,
     /// Stops the running trace, export or keeping.
@@ -100,6 +102,7 @@ impl Command {
             Command::Mixer => "Light mixer",
             Command::Chart => "Speed and accuracy",
             Command::Mass => "Mass properties",
+            Command::Pixel => "Pixel and its rays",
             Command::SampleMap => "Sample map",
             Command::Stop => "Stop",
             Command::Resume => "Trace now",
@@ -145,6 +148,9 @@ impl Command {
                 "Measures samples, depth, cut-off and adaptive step here, and recommends settings"
             }
             Command::Mass => "Volume, centre of mass and inertia of the selected solid, by rays",
+            Command::Pixel => {
+                "Colour, ray tree and shares of the pixel that is clicked: why it has this colour"
+            }
             Command::SampleMap => {
                 "Where adaptive sampling (trace.adaptive) spends its rays: white pixels have all samples"
             }
@@ -176,6 +182,7 @@ impl Command {
             Command::Delete => keys(Modifiers::NONE, Key::Delete),
             Command::Handles => keys(Modifiers::NONE, Key::H),
             Command::Mixer => keys(Modifiers::NONE, Key::L),
+            Command::Pixel => keys(Modifiers::NONE, Key::I),
             Command::New(_)
             | Command::OpenRecent(_)
             | Command::Import
@@ -192,7 +199,7 @@ impl Command {
 
     /// The commands with shortcuts. Those with more modifiers come first, so that Shift-Ctrl-Z is
     /// not taken for Ctrl-Z.
-    pub(super) const WITH_SHORTCUTS: [Command; 19] = [
+    pub(super) const WITH_SHORTCUTS: [Command; 20] = [
         Command::SaveAs,
         Command::Redo,
         Command::Open,
@@ -211,6 +218,7 @@ impl Command {
         Command::Delete,
         Command::Handles,
         Command::Mixer,
+        Command::Pixel,
         Command::Stop,
     ];
 

@@ -277,6 +277,7 @@ impl App {
         self.mixer.forget();
         self.chart.forget();
         self.mass.forget();
+        self.pixel.forget();
         self.show_opened();
     }
 

@@ -28,6 +28,8 @@ pub(super) struct MenuState<'a> {
     pub(super) chart: bool,
     /// Whether the panel of mass properties shows.
     pub(super) mass: bool,
+    /// Whether the panel of a pixel shows.
+    pub(super) pixel: bool,
     /// What commands about lights and materials are about.
     pub(super) subject: Subject,
     /// Whether what was traced can be kept.
@@ -202,6 +204,7 @@ fn view_menu(
         (Command::Mixer, state.mixer),
         (Command::Chart, state.chart),
         (Command::Mass, state.mass),
+        (Command::Pixel, state.pixel),
         (Command::SampleMap, state.sample_map),
     ] {
         let button = with_keys(ui, command, command.name()).selected(on);

@@ -168,13 +168,14 @@ fn spot_ui(ui: &mut Ui, color: Color32) {
 }
 
 /// The colour that stands for a material: what it is seen by most.
-fn swatch(material: &Material) -> Color32 {
+pub(super) fn swatch(material: &Material) -> Color32 {
     let color = material.paint.mean();
     let glass = material.transmit.max_channel() > 0.5;
     shown(if glass { material.filter } else { color })
 }
 
-fn lamp(light: &Light) -> Color32 {
+/// The colour of a light; none of one that is off.
+pub(super) fn lamp(light: &Light) -> Color32 {
     if light.on { shown(light.color) } else { Color32::TRANSPARENT }
 }
 

@@ -74,6 +74,8 @@ pub(super) struct PictureOutcome {
     pub(super) camera_moved: bool,
     /// Where the pointer is, in pixels of the picture.
     pub(super) pointer: Option<[f64; 2]>,
+    /// The same, if nothing lies between.
+    pub(super) hovered: Option<[f64; 2]>,
 }
 
 impl PictureView {
@@ -192,6 +194,7 @@ impl PictureView {
             outcome.clicked = response.interact_pointer_pos().and_then(pixel);
         }
         outcome.pointer = ui.input(|i| i.pointer.latest_pos()).and_then(pixel);
+        outcome.hovered = response.hover_pos().and_then(pixel);
         self.paint(ui, view, place);
         let cursor = match (self.camera_tool, response.dragged()) {
             (true, _) => CursorIcon::Move,

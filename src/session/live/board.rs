@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use fearless_simd::{Level, dispatch};
 
-use super::{Event, Job, Picked, Shown, Status};
+use super::{Event, Inspected, Job, Picked, Shown, Status};
 use crate::forest::camera::View;
 use crate::geometry::{Geometry, Stack};
 use crate::progress::Progress;
@@ -32,6 +32,9 @@ struct Face {
     costs: Arc<BTreeMap<String, Cost>>,
     /// Where the person looks, in pixels of the picture.
     cursor: Option<[f64; 2]>,
+    pixels: Arc<BTreeMap<[u32; 2], Inspected>>,
+    /// Of the pixel that is being taken apart, or was.
+    inspection: Arc<Progress>,
 }
 
 /// The job that the status tells of.
@@ -107,6 +110,7 @@ impl Board {
     /// Counts a wish: until the status speaks of it, nothing is in step.
     pub(super) fn wish(&self) -> u64 {
         let mut face = self.face();
+        face.inspection.cancel();
         face.wishes += 1;
         face.wishes
     }
@@ -154,6 +158,27 @@ impl Board {
 
     pub(super) fn costs(&self) -> Arc<BTreeMap<String, Cost>> {
         self.face().costs.clone()
+    }
+
+    /// The next wish, or other wanted pixels, interrupt what is begun.
+    pub(super) fn begin_inspection(&self) -> Arc<Progress> {
+        let begun = Arc::new(Progress::default());
+        self.face().inspection = begun.clone();
+        begun
+    }
+
+    pub(super) fn stop_inspection(&self) {
+        self.face().inspection.cancel();
+    }
+
+    pub(super) fn show_pixels(&self, pixels: BTreeMap<[u32; 2], Inspected>) {
+        let old = std::mem::replace(&mut self.face().pixels, Arc::new(pixels));
+        drop(old);
+        self.wake();
+    }
+
+    pub(super) fn pixels(&self) -> Arc<BTreeMap<[u32; 2], Inspected>> {
+        self.face().pixels.clone()
     }
 
     pub(super) fn look_at(&self, point: Option<[f64; 2]>) {

@@ -18,6 +18,7 @@ use std::thread::JoinHandle;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::cost::Cost;
+use super::inspect::PixelTree;
 use super::{EditReport, Options};
 use crate::film::Frame;
 use crate::film::write::Format;
@@ -118,6 +119,9 @@ pub struct Export {
     /// Its size; at the scene's own it holds the bytes that are shown.
     pub size: [u32; 2],
 }
+
+/// A pixel taken apart, or why it cannot be.
+pub type Inspected = Result<Arc<PixelTree>, String>;
 
 /// What a pixel shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -237,6 +241,18 @@ impl Live {
     /// told of once, and not used any more.
     pub fn draw_on(&self, gpu: Option<Gpu>) {
         self.order(Message::DrawOn(gpu));
+    }
+
+    /// Names the pixels that are to be taken apart, now and after every edit: once the picture is
+    /// whole, and while nothing else is to be done.
+    pub fn inspect(&self, pixels: Vec<[u32; 2]>) {
+        self.board.stop_inspection();
+        self.order(Message::Inspect(pixels));
+    }
+
+    /// What is known of them: of the scene shown, or, for a moment, of the one before.
+    pub fn inspected(&self) -> Arc<BTreeMap<[u32; 2], Inspected>> {
+        self.board.pixels()
     }
 
     /// Writes a picture of the newest wanted scene, after its trace if that still runs.

@@ -1,6 +1,7 @@
 //! The thread that owns the pictures: takes wishes, shades what needs no ray, sends off the rest.
 
 mod card;
+mod curious;
 mod exports;
 mod keep;
 mod mend;
@@ -27,6 +28,7 @@ use crate::scene::change::Change;
 use crate::session::regrow::{Patch, Regrow};
 use crate::session::{Class, EditReport, Options, Session, Work};
 use crate::shade::gpu::{Gpu, Product};
+use curious::Curiosity;
 use keep::Keeping;
 
 /// What the shader is told, by the window and by the other threads.
@@ -44,6 +46,8 @@ pub(super) enum Message {
     Resume,
     Watch(Vec<String>),
     DrawOn(Option<Gpu>),
+    /// Pixels to be taken apart.
+    Inspect(Vec<[u32; 2]>),
     Export(Export),
     /// A stage before the whole picture.
     Staged {
@@ -184,6 +188,7 @@ pub(super) struct Shader {
     waiting: Vec<Export>,
     exports: VecDeque<Pending>,
     badges: Badges,
+    curious: Curiosity,
     /// The number of the newest wish.
     heard: u64,
     /// The progress last told, and when.
@@ -224,6 +229,7 @@ impl Shader {
             waiting: Vec::new(),
             exports: VecDeque::new(),
             badges: Badges::default(),
+            curious: Curiosity::default(),
             heard: 0,
             told: (0, 0),
             told_at: Instant::now(),
@@ -254,8 +260,9 @@ impl Shader {
     fn patience(&self) -> Duration {
         let working = self.job.is_some() || !self.exports.is_empty();
         let yielded = self.busy_until.map(|t| t.saturating_duration_since(Instant::now()));
-        let waits = [working.then_some(TICK), yielded, self.badges.wait(), self.keeping_wait()];
-        waits.into_iter().flatten().min().unwrap_or(Duration::from_secs(3600))
+        let idle = [self.badges.wait(), self.keeping_wait(), self.curious_wait()];
+        let waits = [working.then_some(TICK), yielded].into_iter().chain(idle);
+        waits.flatten().min().unwrap_or(Duration::from_secs(3600))
     }
 
     fn turn(&mut self, messages: Vec<Message>) {
@@ -272,6 +279,7 @@ impl Shader {
             self.preview.as_mut().map(|p| &mut p.session).or(self.whole.as_mut())
         {
             self.badges.work(shown, &self.board);
+            self.work_on_pixels();
             self.work_on_keeping();
         }
         if self.in_step() {
@@ -291,6 +299,7 @@ impl Shader {
             Message::Resume => self.resume(),
             Message::Watch(paths) => self.badges.watch(paths),
             Message::DrawOn(gpu) => self.draw_on(gpu),
+            Message::Inspect(pixels) => self.curious.want(pixels),
             Message::Export(export) => self.export(export),
             Message::Staged { id, stage, divisor, session } => {
                 self.staged(id, stage, divisor, *session);

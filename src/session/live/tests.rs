@@ -1,6 +1,7 @@
 //! The live session, held to the session: same bytes, fewer rays, nothing that hangs.
 
 mod card;
+mod inspected;
 mod keep;
 
 use std::path::{Path, PathBuf};

@@ -8,6 +8,7 @@ mod comes_alive;
 mod floors;
 mod gpu;
 mod histories;
+mod inspected;
 mod lamps;
 mod memory;
 mod parts;

@@ -190,6 +190,11 @@ fn inspect_shows_one_tree_or_all() {
     assert!(all.contains("sample 1 of 2") && all.contains("sample 2 of 2"), "{all}");
     assert!(one.contains("eye ray → solid ball, material mirror"), "{one}");
     assert!(one.contains("light key: N·L"), "{one}");
+    let scene = read::text(SCENE, Path::new("scene.toml")).unwrap();
+    let session = Session::open(scene, Options::default(), &Progress::default()).unwrap();
+    let [r, g, b, _] = session.frame().pixel([24, 13]);
+    let shown = format!("shown: sRGB {r} {g} {b}, #{r:02X}{g:02X}{b:02X}; 2 samples");
+    assert!(one.contains(&shown), "{one}");
 }
 
 #[test]

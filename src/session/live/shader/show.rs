@@ -13,6 +13,7 @@ impl Shader {
     /// Hands the newest picture to the window.
     pub(super) fn show(&mut self) {
         self.shown_at = Some(Instant::now());
+        self.curious.renew();
         if let Some((frame, scene, geometry)) = self.mending().map(|mending| {
             (mending.frame(), mending.scene.clone(), mending.regrow.geometry.clone())
         }) {

@@ -6,6 +6,7 @@ mod edits;
 mod export;
 mod graphics;
 mod pictures;
+mod pixel;
 mod recovery;
 mod server;
 mod twin;

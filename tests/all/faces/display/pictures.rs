@@ -58,6 +58,16 @@ fn take_pictures(size: [u16; 2], zoom_percent: u32, theme: &str) {
     until_still(&desk);
     desk.press("ctrl+shift+s");
     take("path", &desk);
+    desk.press("Escape");
+    until_still(&desk);
+    desk.press("i");
+    until_still(&desk);
+    let picture = pos2(f32::from(size[0]) * 0.4, f32::from(size[1]) * 0.35);
+    desk.point(picture);
+    desk.server.xdotool(&["mousedown", "1", "mouseup", "1"]);
+    take("pixel", &desk);
+    desk.point(pos2(f32::from(size[0]) * 0.32, f32::from(size[1]) - at(pos2(0.0, 150.0)).y));
+    take("pixel-line", &desk);
 }
 
 #[test]

@@ -120,6 +120,12 @@ impl Twin {
         self.rest();
     }
 
+    /// Presses a key.
+    pub(super) fn press(&mut self, key: Key) {
+        self.harness.key_press(key);
+        self.rest();
+    }
+
     /// Presses a key together with Ctrl.
     pub(super) fn press_ctrl(&mut self, key: Key) {
         self.harness.key_press_modifiers(Modifiers::COMMAND, key);

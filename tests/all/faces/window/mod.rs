@@ -19,6 +19,7 @@ mod names;
 mod operands;
 mod paths;
 mod picture;
+mod pixel;
 mod questions;
 mod recovery;
 

@@ -194,6 +194,25 @@ fn every_control_of_mass_has_a_name_and_a_tooltip() {
 }
 
 #[test]
+fn every_control_of_a_pixel_has_a_name_and_a_tooltip() {
+    let mut window = tall();
+    let before = window.controls();
+    window.key(Modifiers::NONE, Key::I);
+    window.until_text("Click a pixel of the picture");
+    let picture = window.rect(Role::Image, "picture").center();
+    window.click_at(picture, Modifiers::NONE);
+    window.until_text("By bounce");
+    window.harness.run_steps(3);
+    // What moved to make room, or came with another selection, is not new.
+    let panel = window.rect(Role::Button, "Close pixel").top() - 10.0;
+    let mut others = window.controls();
+    let is_old = |c: &Control| before.iter().any(|old| old.name == c.name);
+    let below = |c: &Control| c.rect.center().y > 1380.0;
+    others.retain(|control| is_old(control) || control.rect.top() < panel || below(control));
+    window.walk(&others, 8);
+}
+
+#[test]
 fn every_item_of_the_menu_of_a_line_has_a_name_and_a_tooltip() {
     let mut window = tall();
     for (line, least) in [("mirror", 4), ("fill", 3)] {

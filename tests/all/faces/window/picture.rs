@@ -7,7 +7,7 @@ use crate::faces::SCENE;
 
 impl Window {
     /// Where the picture lies on the screen, in points, from what was painted.
-    fn place(&mut self) -> Rect {
+    pub(super) fn place(&mut self) -> Rect {
         self.harness.step();
         let view = self.rect(Role::Image, "picture");
         let meshes =
@@ -24,7 +24,7 @@ impl Window {
     }
 
     /// A pixel of the picture on the screen.
-    fn at(&mut self, x: f32, y: f32) -> Pos2 {
+    pub(super) fn at(&mut self, x: f32, y: f32) -> Pos2 {
         let place = self.place();
         place.min + vec2(x / 48.0, y / 27.0) * place.size()
     }
