@@ -1,7 +1,7 @@
 //! The picture on the screen: zoom to the pointer, pan, 1:1, clicks that pick, drags that move the camera.
 
 use eframe::egui::{
-    Color32, ColorImage, CursorIcon, PointerButton, Pos2, Rect, Response, Role, Sense,
+    Color32, ColorImage, CursorIcon, Painter, PointerButton, Pos2, Rect, Response, Role, Sense,
     TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
@@ -32,6 +32,58 @@ struct Piece {
     rect: Rect,
 }
 
+/// A picture on the graphics card.
+#[derive(Default)]
+struct Layer {
+    pieces: Vec<Piece>,
+    frame_size: [u32; 2],
+}
+
+impl Layer {
+    /// Takes a frame of a picture of `size` pixels.
+    fn set(&mut self, ui: &Ui, name: &str, frame: &Frame, size: [u32; 2]) {
+        let sharp = options(frame.size == size);
+        if self.frame_size != frame.size {
+            self.frame_size = frame.size;
+            self.pieces.clear();
+        }
+        for (i, &rect) in pieces(frame.size).iter().enumerate() {
+            let image = image(frame, rect);
+            match self.pieces.get_mut(i) {
+                Some(piece) => piece.texture.set(image, sharp),
+                None => {
+                    let texture = ui.ctx().load_texture(format!("{name} {i}"), image, sharp);
+                    self.pieces.push(Piece { texture, rect: bounds(rect) });
+                }
+            }
+        }
+    }
+
+    /// Paints it into `place`.
+    fn paint(&self, painter: &Painter, place: Rect) {
+        let frame = vec2(self.frame_size[0] as f32, self.frame_size[1] as f32);
+        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        for piece in &self.pieces {
+            let min = place.min + piece.rect.min.to_vec2() / frame * place.size();
+            let max = place.min + piece.rect.max.to_vec2() / frame * place.size();
+            let rect = Rect::from_min_max(min, max);
+            painter.image(piece.texture.id(), rect, whole, Color32::WHITE);
+        }
+    }
+}
+
+/// How much of the other picture is seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Beside {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// What is left of this share of the picture's width.
+    Left(f32),
+    /// All of it.
+    Whole,
+}
+
 /// The picture and how it is looked at.
 pub(super) struct PictureView {
     zoom: Zoom,
@@ -39,8 +91,10 @@ pub(super) struct PictureView {
     center: Pos2,
     /// `picture.size` of the scene that is shown.
     size: Vec2,
-    pieces: Vec<Piece>,
-    frame_size: [u32; 2],
+    picture: Layer,
+    other: Layer,
+    /// How much of the other picture is seen.
+    pub(super) beside: Beside,
     /// Whether drags move the camera.
     pub(super) camera_tool: bool,
     /// Whether a click focuses the camera.
@@ -65,8 +119,9 @@ impl PictureView {
             zoom: Zoom::Fit,
             center: Pos2::ZERO,
             size: Vec2::ZERO,
-            pieces: Vec::new(),
-            frame_size: [0, 0],
+            picture: Layer::default(),
+            other: Layer::default(),
+            beside: Beside::Nothing,
             camera_tool: false,
             focus_tool: false,
         }
@@ -78,23 +133,12 @@ impl PictureView {
         if new_size != self.size {
             (self.size, self.zoom, self.center) = (new_size, Zoom::Fit, (new_size / 2.0).to_pos2());
         }
-        let cut = pieces(frame.size);
-        if self.frame_size != frame.size {
-            self.frame_size = frame.size;
-            self.pieces.clear();
-        }
-        for (i, &rect) in cut.iter().enumerate() {
-            let image = image(frame, rect);
-            match self.pieces.get_mut(i) {
-                Some(piece) => piece.texture.set(image, options(frame.size == size)),
-                None => {
-                    let name = format!("picture {i}");
-                    let sharp = options(frame.size == size);
-                    let texture = ui.ctx().load_texture(name, image, sharp);
-                    self.pieces.push(Piece { texture, rect: bounds(rect) });
-                }
-            }
-        }
+        self.picture.set(ui, "picture", frame, size);
+    }
+
+    /// Takes the picture to compare with.
+    pub(super) fn set_other(&mut self, ui: &Ui, frame: &Frame) {
+        self.other.set(ui, "other picture", frame, frame.size);
     }
 
     /// The whole picture.
@@ -166,13 +210,15 @@ impl PictureView {
     fn paint(&self, ui: &Ui, view: Rect, place: Rect) {
         let painter = ui.painter_at(view);
         painter.rect_filled(view, 0.0, Color32::from_gray(40));
-        let frame = vec2(self.frame_size[0] as f32, self.frame_size[1] as f32);
-        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-        for piece in &self.pieces {
-            let min = place.min + piece.rect.min.to_vec2() / frame * place.size();
-            let max = place.min + piece.rect.max.to_vec2() / frame * place.size();
-            let rect = Rect::from_min_max(min, max);
-            painter.image(piece.texture.id(), rect, whole, Color32::WHITE);
+        self.picture.paint(&painter, place);
+        match self.beside {
+            Beside::Nothing => {}
+            Beside::Left(share) => {
+                let right = place.left() + place.width() * share;
+                let clip = Rect::from_min_max(view.min, pos2(right, view.bottom()));
+                self.other.paint(&painter.with_clip_rect(clip.intersect(view)), place);
+            }
+            Beside::Whole => self.other.paint(&painter, place),
         }
     }
 
@@ -262,6 +308,12 @@ fn pieces(size: [u32; 2]) -> Vec<[usize; 4]> {
 
 fn bounds([left, top, right, bottom]: [usize; 4]) -> Rect {
     Rect::from_min_max(pos2(left as f32, top as f32), pos2(right as f32, bottom as f32))
+}
+
+/// A small frame as egui wants it.
+pub(super) fn whole_image(frame: &Frame) -> ColorImage {
+    let [width, height] = frame.size.map(|n| n as usize);
+    image(frame, [0, 0, width, height])
 }
 
 /// One piece of a frame as egui wants it.

@@ -1,6 +1,7 @@
 //! The thread that owns the pictures: takes wishes, shades what needs no ray, sends off the rest.
 
 mod exports;
+mod glances;
 mod keep;
 mod mend;
 mod show;
@@ -18,13 +19,14 @@ use super::badges::Badges;
 use super::board::{Board, Target};
 use super::mending::Mending;
 use super::tracer::{self, Compiled, Control, Outcome, staged};
-use super::{Event, Export, Stage, export, guarded, pool};
+use super::{Event, Export, Glance, Stage, export, guarded, pool};
 use crate::forest::Forest;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::scene::change::Change;
 use crate::session::regrow::{Patch, Regrow};
 use crate::session::{Class, EditReport, Options, Session, Work};
+use glances::Glances;
 use keep::Keeping;
 
 /// What the shader is told, by the window and by the other threads.
@@ -41,6 +43,7 @@ pub(super) enum Message {
     Cancel(Target),
     Resume,
     Watch(Vec<String>),
+    Glance(Vec<Glance>),
     Export(Export),
     /// A stage before the whole picture.
     Staged {
@@ -179,6 +182,7 @@ pub(super) struct Shader {
     waiting: Vec<Export>,
     exports: VecDeque<Pending>,
     badges: Badges,
+    glances: Glances,
     /// The number of the newest wish.
     heard: u64,
     /// The progress last told, and when.
@@ -218,6 +222,7 @@ impl Shader {
             waiting: Vec::new(),
             exports: VecDeque::new(),
             badges: Badges::default(),
+            glances: Glances::default(),
             heard: 0,
             told: (0, 0),
             told_at: Instant::now(),
@@ -248,8 +253,9 @@ impl Shader {
     fn patience(&self) -> Duration {
         let working = self.job.is_some() || !self.exports.is_empty();
         let yielded = self.busy_until.map(|t| t.saturating_duration_since(Instant::now()));
-        let waits = [working.then_some(TICK), yielded, self.badges.wait(), self.keeping_wait()];
-        waits.into_iter().flatten().min().unwrap_or(Duration::from_secs(3600))
+        let idle = [self.badges.wait(), self.keeping_wait(), self.glance_wait()];
+        let waits = [working.then_some(TICK), yielded].into_iter().chain(idle);
+        waits.flatten().min().unwrap_or(Duration::from_secs(3600))
     }
 
     fn turn(&mut self, messages: Vec<Message>) {
@@ -267,6 +273,7 @@ impl Shader {
         {
             self.badges.work(shown, &self.board);
             self.work_on_keeping();
+            self.glance();
         }
         if self.in_step() {
             self.cache = None;
@@ -284,6 +291,7 @@ impl Shader {
             Message::Cancel(target) => self.cancel(target),
             Message::Resume => self.resume(),
             Message::Watch(paths) => self.badges.watch(paths),
+            Message::Glance(wanted) => self.watch_glances(wanted),
             Message::Export(export) => self.export(export),
             Message::Staged { id, stage, divisor, session } => {
                 self.staged(id, stage, divisor, *session);

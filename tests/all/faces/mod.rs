@@ -10,6 +10,7 @@ mod convert;
 mod display;
 mod killed;
 mod language;
+mod looks;
 mod mass;
 mod parts;
 mod window;
