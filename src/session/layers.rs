@@ -31,6 +31,9 @@ struct Place {
     material: Option<usize>,
 }
 
+/// Which terms are in a layer.
+type Chosen = Box<dyn Fn(&Place) -> bool>;
+
 /// What a term's light comes from.
 #[derive(Clone, Copy, PartialEq)]
 enum Source {
@@ -105,7 +108,7 @@ impl Session {
     }
 
     fn all_layers(&self, places: &[Place]) -> Result<Vec<Layer>, LayersError> {
-        let mut groups: Vec<(String, Box<dyn Fn(&Place) -> bool>)> = Vec::new();
+        let mut groups: Vec<(String, Chosen)> = Vec::new();
         for (i, light) in self.scene.lights.iter().enumerate() {
             let index = usize::from(self.names.lights[i]);
             let source = Source::Light(index);

@@ -185,6 +185,7 @@ impl Strip {
                 texture: card.thumb.as_ref().map(|thumb| &thumb.texture),
                 below: card.name.as_deref().unwrap_or("No look"),
                 is_on: scene.looks.worn() == card.name.as_deref(),
+                is_dear: card.class.is_some_and(|class| class >= Class::Regrow),
                 is_compared: *reference == this,
                 badge: Some((class, color)),
             };
@@ -228,6 +229,7 @@ impl Strip {
                 texture: Some(thumb),
                 below: &snapshot.name,
                 is_on: false,
+                is_dear: false,
                 is_compared: *reference == this,
                 badge: None,
             };
@@ -276,6 +278,8 @@ struct Face<'a> {
     texture: Option<&'a TextureHandle>,
     below: &'a str,
     is_on: bool,
+    /// Whether there is no thumbnail because it needs rays.
+    is_dear: bool,
     is_compared: bool,
     badge: Option<(&'a str, Color32)>,
 }
@@ -299,6 +303,10 @@ impl Face<'_> {
             let place = Rect::from_center_size(space.center(), size * scale);
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             painter.image(texture.id(), place, whole, Color32::WHITE);
+        } else if self.is_dear {
+            let light = Color32::from_gray(200);
+            let font = FontId::proportional(11.0);
+            painter.text(space.center(), Align2::CENTER_CENTER, "shown when put on", font, light);
         }
         if self.is_compared {
             let stroke = Stroke::new(2.0, ui.visuals().selection.bg_fill);
@@ -309,7 +317,10 @@ impl Face<'_> {
         let mut right = space.right();
         if let Some((text, color)) = self.badge {
             let at = pos2(right, middle);
-            let weak = ui.visuals().weak_text_color();
+            let weak = match self.is_on {
+                true => visuals.text_color(),
+                false => ui.visuals().weak_text_color(),
+            };
             let drawn =
                 painter.text(at, Align2::RIGHT_CENTER, text, FontId::proportional(11.0), weak);
             painter.circle_filled(pos2(drawn.left() - 6.0, middle), 3.0, color);

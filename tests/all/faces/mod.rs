@@ -10,6 +10,7 @@ mod convert;
 mod display;
 mod killed;
 mod language;
+mod layers;
 mod looks;
 mod mass;
 mod parts;
