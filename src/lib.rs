@@ -83,6 +83,10 @@
 //!   writer of scene files: a parameter without a control cannot be written.
 //! * **The text belongs to the person.** A document keeps the text of its file and changes single
 //!   values in it; whatever is written is read back and compared bit for bit first.
+//! * **Looks** are differences by path. A [`Scene`](scene::Scene)'s values are those that show, with the
+//!   look that is worn; what they are without it stands beside the looks, and is what its text says. So
+//!   switching is an edit like any other, and nothing below the document knows of looks. A picture of
+//!   another look than the one worn is an edit of the session and one back, where that needs no ray.
 //! * **Nothing is dropped silently.** An import of another program's file is an ordinary scene, files
 //!   beside it, and a list of remarks: what has no place in a scene, with its place in the file.
 //! * **Absences.** `shade` never sees `geometry`; nothing below `cli` prints; nothing is `unsafe`;

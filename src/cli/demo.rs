@@ -6,6 +6,7 @@ use super::render::edit_line;
 use super::watch::watched;
 use super::{Failure, print, read_scene, say};
 use crate::document::BUILT_IN;
+use crate::film::plates::Plates;
 use crate::film::write::{Format, check_writable, picture};
 use crate::scene::path::set;
 use crate::scene::{Scene, read, write};
@@ -48,7 +49,8 @@ fn save(session: &Session, file: PathBuf) -> Result<(), Failure> {
     let scene = session.scene();
     let text = write::text(scene);
     let exposure = scene.picture.exposure;
-    picture(&file, Format::Png8, &session.film(), exposure, &text).map_err(Failure::job)?;
+    picture(&file, Format::Png8, &Plates::of(session.film()), exposure, &text)
+        .map_err(Failure::job)?;
     print(&format!("wrote {}", file.display()));
     Ok(())
 }

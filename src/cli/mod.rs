@@ -8,6 +8,7 @@ mod inspect;
 mod language;
 mod mass;
 mod render;
+mod sheet;
 mod tiles;
 mod watch;
 
@@ -19,6 +20,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use serde_json::Value;
 
 use crate::bench;
+use crate::film::embedded::{is_picture, scene_text};
 use crate::film::write::check_writable;
 use crate::scene::energy::overbright;
 use crate::scene::{Scene, path, read, write};
@@ -290,8 +292,12 @@ impl Common {
     }
 }
 
-/// Reads a scene file; the failure lists its mistakes.
+/// Reads a scene file, or the scene in an exported picture; the failure lists its mistakes.
 pub(crate) fn read_scene(file: &Path) -> Result<Scene, Failure> {
+    if is_picture(file) {
+        let text = scene_text(file).map_err(Failure::input)?;
+        return read::text(&text, file).map_err(Failure::input);
+    }
     read::file(file).map_err(Failure::input)
 }
 

@@ -8,11 +8,13 @@ use serde_json::{Value, json};
 use super::cached::{self, OpenedScene};
 use super::tiles::{self, check_part_name};
 use super::watch::watched;
-use super::{Common, Failure, print, read_scene, say, set, write_text};
+use super::{Common, Failure, print, read_scene, say, set, sheet, write_text};
+use crate::film::plates::Region;
 use crate::film::write::{self as files, Format, check_writable, picture};
 use crate::forest::grow::RayCounts;
 use crate::scene::{Scene, write};
 use crate::session::cache::OpenedCache;
+use crate::session::layers::Extras;
 use crate::session::part::Share;
 use crate::session::{Class, EditReport, Options, Session};
 
@@ -21,8 +23,15 @@ pub(crate) struct Render {
     /// A scene file.
     scene: PathBuf,
     /// The picture: .png or .exr; with --tile a .part.
-    #[arg(short, long, value_name = "FILE")]
-    output: PathBuf,
+    #[arg(short, long, value_name = "FILE", required_unless_present = "looks")]
+    output: Option<PathBuf>,
+    /// The look to put on, of those in the scene file, before --set; '' for none.
+    #[arg(long, value_name = "NAME")]
+    look: Option<String>,
+    /// Write a contact sheet as PNG: the scene without a look and with each, row by row, each a third
+    /// as large; what each cost is told.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["tile", "look", "edit"])]
+    looks: Option<PathBuf>,
     /// Bits per channel of a PNG.
     #[arg(long, default_value = "8", value_parser = ["8", "16"])]
     bits: String,
@@ -52,6 +61,16 @@ pub(crate) struct Render {
     /// have all samples.
     #[arg(long, value_name = "FILE", conflicts_with = "tile")]
     sample_map: Option<PathBuf>,
+    /// Leave out the background that the eye sees, and write how much of each pixel is covered.
+    #[arg(long, requires = "output", conflicts_with = "tile")]
+    alpha: bool,
+    /// Write a layer per light, per material and per bounce into the EXR, beside the picture.
+    #[arg(long, requires = "output", conflicts_with = "tile")]
+    layers: bool,
+    /// Write this part of the picture alone: left, top, width and height in pixels, e.g. 0,0,640x360.
+    #[arg(long, value_name = "X,Y,WxH", value_parser = parse_region, requires = "output",
+          conflicts_with = "tile")]
+    region: Option<Region>,
     #[command(flatten)]
     common: Common,
 }
@@ -61,7 +80,11 @@ impl Render {
         if let Some(share) = self.tile {
             return self.part(share);
         }
-        let format = Format::of(&self.output, self.bits == "16").map_err(Failure::input)?;
+        let format = self.output.as_deref().map(|file| Format::of(file, self.bits == "16"));
+        let format = format.transpose().map_err(Failure::input)?;
+        if self.layers && format != Some(Format::Exr) {
+            return Err(Failure::input("--layers: the name of the picture must end in .exr"));
+        }
         let (scene, options) = self.prepare()?;
         // A mistake in an edit is found before the trace, not after it.
         let edits = self.edits(&scene)?;
@@ -78,13 +101,21 @@ impl Render {
             reports.push(edit_stats(assignment, &report));
         }
         stats["edits"] = Value::Array(reports);
-        let text = write::text(session.scene());
-        let exposure = session.scene().picture.exposure;
-        picture(&self.output, format, &session.film(), exposure, &text).map_err(Failure::job)?;
+        if let Some((file, format)) = self.output.as_deref().zip(format) {
+            let text = write::text(session.scene());
+            let exposure = session.scene().picture.exposure;
+            let plates = session.plates(self.extras()).map_err(Failure::input)?;
+            picture(file, format, &plates, exposure, &text).map_err(Failure::job)?;
+        }
         self.write_sample_map(&session)?;
+        if let Some(file) = &self.looks {
+            stats["looks"] = sheet::write(&mut session, file)?;
+        }
         self.write_stats(&stats)?;
-        if !self.stats_are_results() {
-            let shown = self.output.display();
+        if let Some(file) = self.output.as_ref().or(self.looks.as_ref())
+            && !self.stats_are_results()
+        {
+            let shown = file.display();
             let (how, seconds, rays) = match &opened {
                 Some(OpenedCache { cache, edit }) if edit.class < Class::Retrace => {
                     ("opened", cache.seconds + edit.milliseconds / 1e3, edit.rays)
@@ -99,24 +130,40 @@ impl Render {
 
     /// Checks where results go, and reads the scene with all that is set before the trace.
     fn prepare(&self) -> Result<(Scene, Options), Failure> {
-        check_writable(&self.output).map_err(Failure::job)?;
+        for file in self.output.iter().chain(&self.looks) {
+            check_writable(file).map_err(Failure::job)?;
+        }
         if let Some(file) = self.stats.as_deref().filter(|f| *f != Path::new("-")) {
             check_writable(file).map_err(Failure::job)?;
         }
         let mut scene = read_scene(&self.scene)?;
+        if let Some(name) = &self.look {
+            let name = Some(name.as_str()).filter(|name| !name.is_empty());
+            let dressed = scene.dressed(name);
+            scene = dressed.map_err(|error| Failure::input(format!("--look: {error}")))?;
+        }
         let options = self.common.apply(&mut scene)?;
         for assignment in &self.set {
             let (path, value) = split(assignment, "--set")?;
             set(&mut scene, path, value, "--set")?;
         }
+        let within = self.region.map_or(Ok(()), |region| region.check(scene.picture.size));
+        within.map_err(|error| Failure::input(format!("--region: {error}")))?;
         Ok((scene, options))
+    }
+
+    /// What else than the picture its file shall hold.
+    fn extras(&self) -> Extras {
+        Extras { alpha: self.alpha, layers: self.layers, region: self.region }
     }
 
     /// Traces one part of the picture.
     fn part(&self, share: Share) -> Result<(), Failure> {
-        check_part_name(&self.output)?;
+        // With --tile there is always one: --looks excludes it.
+        let Some(output) = &self.output else { return Ok(()) };
+        check_part_name(output)?;
         let (scene, options) = self.prepare()?;
-        let (stats, line) = tiles::trace(&scene, options, share, &self.output)?;
+        let (stats, line) = tiles::trace(&scene, options, share, output)?;
         self.write_stats(&stats)?;
         if !self.stats_are_results() {
             print(&line);
@@ -164,6 +211,16 @@ impl Render {
         }
         Ok(edits)
     }
+}
+
+fn parse_region(text: &str) -> Result<Region, String> {
+    let parts = || {
+        let (x, rest) = text.split_once(',')?;
+        let (y, size) = rest.split_once(',')?;
+        let corner = [x.trim().parse().ok()?, y.trim().parse().ok()?];
+        Some(Region { corner, size: super::parse_size(size).ok()? })
+    };
+    parts().ok_or_else(|| format!("`{text}` is not a region such as 0,0,640x360"))
 }
 
 /// Path and value of an assignment; the failure names the option that it came with.

@@ -10,6 +10,7 @@ use super::render::rays;
 use super::watch::watched;
 use super::{Failure, print};
 use crate::film::layout::Layout;
+use crate::film::plates::Plates;
 use crate::film::write::{Format, check_writable, picture};
 use crate::geometry::Geometry;
 use crate::progress::Progress;
@@ -42,8 +43,9 @@ impl Merge {
         check_writable(&self.output).map_err(Failure::job)?;
         let merged = part::merge(&self.parts).map_err(Failure::input)?;
         let part::Merged { film, scene, exposure } = merged;
-        picture(&self.output, format, &film, exposure, &scene).map_err(Failure::job)?;
         let [width, height] = film.layout.size;
+        let plates = Plates::of(film);
+        picture(&self.output, format, &plates, exposure, &scene).map_err(Failure::job)?;
         let (shown, parts) = (self.output.display(), self.parts.len());
         print(&format!("{shown}: {width}×{height} from {parts} parts"));
         Ok(())

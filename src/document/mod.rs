@@ -1,9 +1,11 @@
 //! The work of a person: a scene, its file, its history of edits, and what keeps it from being lost.
 
 mod history;
+pub mod looks;
 mod open;
 mod outline;
 mod patch;
+mod patch_looks;
 pub mod recovery;
 mod relocate;
 mod save;
@@ -139,9 +141,22 @@ impl Document {
         self.history.scene()
     }
 
+    /// The same, to be kept: another edit makes another one.
+    pub fn shared_scene(&self) -> Arc<Scene> {
+        Arc::clone(self.history.scene())
+    }
+
+    /// The scene as it was opened or last saved, to be kept.
+    pub fn shared_saved_scene(&self) -> Arc<Scene> {
+        Arc::clone(&self.saved)
+    }
+
     /// Takes an edited scene; edits of one gesture, until [`Document::end_gesture`], are one step.
     /// It must be valid: see [`flaw`].
-    pub fn change(&mut self, scene: Scene) {
+    ///
+    /// While a look is worn, edits of what it is about belong to it: see [`looks::follow`].
+    pub fn change(&mut self, mut scene: Scene) {
+        looks::follow(self.history.scene(), &mut scene);
         self.history.change(scene);
         self.refresh();
     }

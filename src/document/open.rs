@@ -8,7 +8,8 @@ use toml::de::DeTable;
 use super::history::History;
 use super::save::file_name;
 use super::{Base, Document, DocumentError, FileKind, Missing};
-use crate::scene::relative::relative;
+use crate::film::embedded::{is_picture, scene_text};
+use crate::scene::relative::{relative, resolved};
 use crate::scene::{Scene, mesh, read, texture};
 
 impl Document {
@@ -46,6 +47,9 @@ impl Document {
         found: &[(String, PathBuf)],
     ) -> Result<Document, DocumentError> {
         let path = &std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        if is_picture(path) {
+            return Document::of_picture(path, found);
+        }
         let bytes = std::fs::read(path).map_err(|error| {
             let help = "check the name of the file and its permissions";
             DocumentError::new(format!(
@@ -63,6 +67,29 @@ impl Document {
         let mut document = Document::of(&file_name(path), &text, scene);
         document.path = Some(path.clone());
         document.disk = Some(Arc::clone(&document.base.text));
+        document.history = History::new(edited);
+        document.refresh();
+        Ok(document)
+    }
+}
+
+impl Document {
+    /// The scene that an exported picture holds: a document without a file. Mesh and image files are
+    /// sought beside the picture, and then named absolutely.
+    fn of_picture(path: &Path, found: &[(String, PathBuf)]) -> Result<Document, DocumentError> {
+        let text = scene_text(path).map_err(DocumentError::new)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let found = replacements(&text, folder, found);
+        let scene = read::text_with(&text, path, known(&text, &found)?)
+            .map_err(|error| with_missing(error.to_string(), &text, folder, &found))?;
+        let mut edited = replaced(&scene, &found, folder);
+        edited.each_file(&mut |file| {
+            let place = resolved(&folder.join(&*file));
+            if let Some(place) = place.to_str() {
+                *file = place.to_owned();
+            }
+        });
+        let mut document = Document::of(&file_name(path), &text, scene);
         document.history = History::new(edited);
         document.refresh();
         Ok(document)

@@ -3,9 +3,10 @@
 use std::collections::HashSet;
 use std::path::Path;
 
+use super::patch_looks::looks;
 use super::splice::Splice;
 use crate::scene::Scene;
-use crate::scene::fields::{LISTS, Need};
+use crate::scene::fields::{LISTS, LOOKS, Need};
 use crate::scene::read::{Known, text_with};
 use crate::scene::toml_text::bare_or_quoted;
 use crate::scene::value::Names;
@@ -45,6 +46,10 @@ fn changed(text: &str, old: &Scene, new: &Scene, wanted: &[Node]) -> Option<Stri
     if present == wanted {
         return Some(text.to_owned());
     }
+    let old_looks = take_looks(&mut present);
+    let mut wanted = wanted.to_vec();
+    let new_looks = take_looks(&mut wanted);
+    let wanted = wanted.as_slice();
     let names = Names::of(new);
     let mut patch =
         Patch { splice: Splice::new(text.to_owned())?, defaults: Defaults::new(&names) };
@@ -63,7 +68,16 @@ fn changed(text: &str, old: &Scene, new: &Scene, wanted: &[Node]) -> Option<Stri
         patch.order(list, items(&present, list), items(wanted, list))?;
     }
     patch.structure(&mut vec![], &present, wanted)?;
+    looks(&mut patch.splice, &old_looks, &new_looks)?;
     Some(patch.splice.into_text())
+}
+
+/// The looks of a tree, which are told apart from everything else: their values stand under paths.
+fn take_looks(nodes: &mut Vec<Node>) -> Vec<Node> {
+    match nodes.pop_if(|node| node.key == LOOKS) {
+        Some(Node { content: Content::Table(looks), .. }) => looks,
+        _ => Vec::new(),
+    }
 }
 
 /// The named things of a list.
@@ -78,7 +92,7 @@ fn items_mut<'a>(nodes: &'a mut [Node], list: &str) -> &'a mut [Node] {
     }
 }
 
-fn children(node: &Node) -> &[Node] {
+pub(super) fn children(node: &Node) -> &[Node] {
     match &node.content {
         Content::Table(children) => children,
         Content::Value(_) => &[],
@@ -87,7 +101,7 @@ fn children(node: &Node) -> &[Node] {
 
 /// The node with a key, which is looked for at the index `hint` first: lists are long, and mostly
 /// as they were.
-fn find<'a>(nodes: &'a [Node], key: &str, hint: usize) -> Option<&'a Node> {
+pub(super) fn find<'a>(nodes: &'a [Node], key: &str, hint: usize) -> Option<&'a Node> {
     let near = nodes.get(hint).filter(|node| node.key == key);
     near.or_else(|| nodes.iter().find(|node| node.key == key))
 }

@@ -351,6 +351,16 @@ impl Splice {
         (at..at, text)
     }
 
+    /// Puts a line behind the last one below the header `[table]`.
+    pub(super) fn append(&mut self, table: &[String], line: &str) -> Option<()> {
+        let index = self.outline.headers.iter().position(|header| header.path == table)?;
+        let home = Home::Lines(Some(index));
+        let last = self.outline.pairs.iter().rev().find(|pair| pair.home == home);
+        let end = last.map_or(self.outline.headers[index].span.end, |pair| pair.value.span.end);
+        let edit = self.line_at(self.line_end(end), line);
+        self.edit(vec![edit])
+    }
+
     /// Inserts a block, which begins with an empty line and ends with a line's end: after the last
     /// header of the nearest of `before` that has one, or else before the first of `after`, or else
     /// at the end.

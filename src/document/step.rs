@@ -3,13 +3,14 @@
 use super::patch::renamed;
 use crate::color::{Rgb, srgb_byte};
 use crate::scene::fields::{self, BUMPS, TEXTURES, Visit};
+use crate::scene::look::Looks;
 use crate::scene::value::Names;
 use crate::scene::write::{Content, Node, nodes};
 use crate::scene::{Material, Scene};
 
 /// What differs from `before` to `after`; only things that differ are looked into.
 pub(super) fn name(before: &Scene, after: &Scene) -> String {
-    if let Some(name) = lists(before, after) {
+    if let Some(name) = lists(before, after).or_else(|| looks(before, after)) {
         return name;
     }
     let differences = differences(before, after);
@@ -35,6 +36,17 @@ fn lists(before: &Scene, after: &Scene) -> Option<String> {
     list("light", lights(before), lights(after))
         .or_else(|| list("material", materials(before), materials(after)))
         .or_else(|| list("solid", solids(before), solids(after)))
+}
+
+/// Name of a step that adds, removes, renames or changes looks.
+fn looks(before: &Scene, after: &Scene) -> Option<String> {
+    let names = |scene: &Scene| scene.looks.list.iter().map(|look| look.name.clone()).collect();
+    let (old, new): (Vec<String>, Vec<String>) = (names(before), names(after));
+    list("look", &old, &new).or_else(|| match (before.looks.worn(), after.looks.worn()) {
+        (before, after) if before == after => None,
+        (_, Some(name)) => Some(format!("look {name}")),
+        (_, None) => Some("no look".to_owned()),
+    })
 }
 
 fn list(kind: &str, old: &[String], new: &[String]) -> Option<String> {
@@ -129,6 +141,7 @@ fn differences(before: &Scene, after: &Scene) -> Vec<Difference> {
             camera: scene.camera.clone(),
             background: scene.background.clone(),
             trace: scene.trace.clone(),
+            looks: Looks::default(),
         };
         nodes(names, &mut |v: &mut dyn Visit| fields::scene(&mut bare.clone(), v))
     };

@@ -1,8 +1,11 @@
 //! What the eye gets: a picture in linear floats, its development to 8 bits, and picture files.
 
 pub mod develop;
+pub mod embedded;
 pub mod layout;
 pub mod pixels;
+pub mod plates;
+pub mod sheet;
 pub mod write;
 
 use crate::color::Rgb;
@@ -35,6 +38,15 @@ impl Film {
         let place = self.layout.place(pixel);
         let FilmBlock(rows) = self.blocks[place.tile * TILE_BLOCKS + place.block];
         Rgb([rows[0][place.lane], rows[1][place.lane], rows[2][place.lane]])
+    }
+
+    /// Sets the light of one pixel.
+    pub fn put(&mut self, pixel: [u32; 2], Rgb(light): Rgb) {
+        let place = self.layout.place(pixel);
+        let FilmBlock(rows) = &mut self.blocks[place.tile * TILE_BLOCKS + place.block];
+        for (row, light) in rows.iter_mut().zip(light) {
+            row[place.lane] = light;
+        }
     }
 }
 

@@ -5,7 +5,9 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::develop::{self, code16};
+use super::plates::Plates;
 use super::{Film, Frame};
+use crate::color::{Rgb, srgb_byte};
 use crate::math::exposure_factor;
 
 /// A picture format and its depth.
@@ -57,14 +59,16 @@ impl std::error::Error for WriteError {}
 pub fn picture(
     path: &Path,
     format: Format,
-    film: &Film,
+    plates: &Plates,
     exposure: f32,
     scene: &str,
 ) -> Result<(), WriteError> {
-    atomically(path, |out| match format {
-        Format::Png8 => png8(out, &develop::frame(film, exposure), scene),
-        Format::Png16 => png16(out, film, exposure, scene),
-        Format::Exr => exr_floats(out, film, scene),
+    let Plates { film, coverage, layers: _ } = plates;
+    atomically(path, |out| match (format, coverage) {
+        (Format::Png8, None) => png8(out, &develop::frame(film, exposure), scene),
+        (Format::Png8, Some(_)) => png8_alpha(out, plates, exposure, scene),
+        (Format::Png16, _) => png16(out, plates, exposure, scene),
+        (Format::Exr, _) => exr_floats(out, plates, scene),
     })
 }
 
@@ -159,35 +163,74 @@ fn beside(path: &Path) -> Result<tempfile::NamedTempFile, WriteError> {
 pub trait WriteSeek: Write + std::io::Seek {}
 impl<T: Write + std::io::Seek> WriteSeek for T {}
 
-const SCENE_KEY: &str = "rayforest scene";
+/// Keyword of the text in a PNG.
+pub(super) const SCENE_KEY: &str = "rayforest scene";
 
 fn png8(out: &mut dyn WriteSeek, frame: &Frame, scene: &str) -> Result<(), String> {
     let rgb: Vec<u8> = frame.bytes.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
-    png_file(out, frame.size, png::BitDepth::Eight, &rgb, scene)
+    png_file(out, frame.size, (png::BitDepth::Eight, false), &rgb, scene)
 }
 
-fn png16(out: &mut dyn WriteSeek, film: &Film, exposure: f32, scene: &str) -> Result<(), String> {
-    let [width, height] = film.layout.size;
+/// Colours are not multiplied by alpha: PNG says so.
+fn png8_alpha(
+    out: &mut dyn WriteSeek,
+    plates: &Plates,
+    exposure: f32,
+    scene: &str,
+) -> Result<(), String> {
+    let size = plates.film.layout.size;
     let gain = exposure_factor(exposure);
-    let mut data = Vec::with_capacity(width as usize * height as usize * 6);
-    for y in 0..height {
-        for x in 0..width {
-            data.extend(code16(film.pixel([x, y]), gain).into_iter().flat_map(u16::to_be_bytes));
+    let mut data = Vec::with_capacity(size[0] as usize * size[1] as usize * 4);
+    for pixel in pixels(size) {
+        let (light, alpha) = uncovered(plates, pixel);
+        data.extend(light.0.map(|channel| srgb_byte(channel * gain)));
+        data.push((alpha * 255.0).round() as u8);
+    }
+    png_file(out, size, (png::BitDepth::Eight, true), &data, scene)
+}
+
+fn png16(
+    out: &mut dyn WriteSeek,
+    plates: &Plates,
+    exposure: f32,
+    scene: &str,
+) -> Result<(), String> {
+    let size = plates.film.layout.size;
+    let gain = exposure_factor(exposure);
+    let mut data = Vec::with_capacity(size[0] as usize * size[1] as usize * 8);
+    let has_alpha = plates.coverage.is_some();
+    for pixel in pixels(size) {
+        let (light, alpha) = uncovered(plates, pixel);
+        data.extend(code16(light, gain).into_iter().flat_map(u16::to_be_bytes));
+        if has_alpha {
+            data.extend(((alpha * 65_535.0).round() as u16).to_be_bytes());
         }
     }
-    png_file(out, [width, height], png::BitDepth::Sixteen, &data, scene)
+    png_file(out, size, (png::BitDepth::Sixteen, has_alpha), &data, scene)
+}
+
+/// The pixels of a picture, row by row.
+fn pixels([width, height]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
+    (0..height).flat_map(move |y| (0..width).map(move |x| [x, y]))
+}
+
+/// The light of what covers a pixel, and how much of it is covered.
+fn uncovered(plates: &Plates, pixel: [u32; 2]) -> (Rgb, f32) {
+    let (light, alpha) = (plates.film.pixel(pixel), plates.alpha(pixel));
+    let whole = if plates.coverage.is_some() && alpha > 0.0 { 1.0 / alpha } else { 1.0 };
+    (light.map(|channel| channel * whole), alpha)
 }
 
 fn png_file(
     out: &mut dyn WriteSeek,
     size: [u32; 2],
-    depth: png::BitDepth,
+    (depth, has_alpha): (png::BitDepth, bool),
     data: &[u8],
     scene: &str,
 ) -> Result<(), String> {
     let text = |e: png::EncodingError| e.to_string();
     let mut encoder = png::Encoder::new(out, size[0], size[1]);
-    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_color(if has_alpha { png::ColorType::Rgba } else { png::ColorType::Rgb });
     encoder.set_depth(depth);
     encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
     encoder.add_itxt_chunk(SCENE_KEY.into(), scene.into()).map_err(text)?;
@@ -196,13 +239,27 @@ fn png_file(
     writer.finish().map_err(text)
 }
 
-fn exr_floats(out: &mut dyn WriteSeek, film: &Film, scene: &str) -> Result<(), String> {
-    use exr::prelude::{Image, SpecificChannels, Text, Vec2, WritableImage};
-    let [width, height] = film.layout.size;
-    let channels = SpecificChannels::rgb(|at: Vec2<usize>| {
-        let [r, g, b] = film.pixel([at.x() as u32, at.y() as u32]).0;
-        (r, g, b)
-    });
+/// Channels `R`, `G`, `B`, `A` of the picture, multiplied by alpha as EXR has it, and those of every
+/// layer behind its name.
+fn exr_floats(out: &mut dyn WriteSeek, plates: &Plates, scene: &str) -> Result<(), String> {
+    use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, Text, WritableImage};
+    let [width, height] = plates.film.layout.size;
+    let mut channels = Vec::new();
+    let mut add = |name: &str, film: &Film, channel: usize| {
+        let values = pixels([width, height]).map(|pixel| film.pixel(pixel).0[channel]);
+        channels.push(AnyChannel::new(name, FlatSamples::F32(values.collect())));
+    };
+    for (i, name) in ["R", "G", "B"].into_iter().enumerate() {
+        add(name, &plates.film, i);
+        for layer in &plates.layers {
+            add(&format!("{}.{name}", layer.name), &layer.film, i);
+        }
+    }
+    if plates.coverage.is_some() {
+        let alpha = pixels([width, height]).map(|pixel| plates.alpha(pixel));
+        channels.push(AnyChannel::new("A", FlatSamples::F32(alpha.collect())));
+    }
+    let channels = AnyChannels::sort(channels.into());
     let mut image = Image::from_channels((width as usize, height as usize), channels);
     // The attribute is bytes; readers show them as UTF-8.
     image.layer_data.attributes.comments = Some(Text::from_slice_unchecked(scene.as_bytes()));
@@ -232,7 +289,7 @@ mod tests {
             let path = folder.path().join(name);
             let write = || {
                 let format = Format::of(&path, deep).unwrap();
-                picture(&path, format, &film(), 0.5, "version = 1 # µ").unwrap();
+                picture(&path, format, &Plates::of(film()), 0.5, "version = 1 # µ").unwrap();
                 std::fs::read(&path).unwrap()
             };
             let first = write();
@@ -247,7 +304,7 @@ mod tests {
     fn png_holds_the_developed_pixels() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
-        picture(&path, Format::Png8, &film(), 0.0, "").unwrap();
+        picture(&path, Format::Png8, &Plates::of(film()), 0.0, "").unwrap();
         let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
         let mut reader = png::Decoder::new(file).read_info().unwrap();
         let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
@@ -266,7 +323,7 @@ mod tests {
         assert!(error.to_string().ends_with("old.png: disc full"), "{error}");
         assert_eq!(std::fs::read(&path).unwrap(), b"old");
         let missing = folder.path().join("no/such/folder.png");
-        assert!(picture(&missing, Format::Png8, &film(), 0.0, "").is_err());
+        assert!(picture(&missing, Format::Png8, &Plates::of(film()), 0.0, "").is_err());
         assert!(Format::of(Path::new("a.jpg"), false).is_err());
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "left-over files");
     }

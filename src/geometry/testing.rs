@@ -90,6 +90,7 @@ pub(super) fn scene(solids: Vec<Solid>) -> Scene {
             material("checkered", checker),
         ],
         solids,
+        ..Scene::default()
     }
 }
 

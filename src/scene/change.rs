@@ -58,8 +58,18 @@ impl Change {
     /// they tell which ones are the same.
     pub fn between(old: &Scene, new: &Scene) -> Change {
         let mut change = Change::default();
-        let Scene { ambient_light, picture, camera, background, trace, lights, materials, solids } =
-            old;
+        // What the worn look does is in the values; the others do nothing.
+        let Scene {
+            ambient_light,
+            picture,
+            camera,
+            background,
+            trace,
+            lights,
+            materials,
+            solids,
+            looks: _,
+        } = old;
         change.term(*ambient_light != new.ambient_light);
         change.picture(picture, &new.picture);
         change.camera(camera, &new.camera);

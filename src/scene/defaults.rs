@@ -7,6 +7,7 @@ use glam::{DVec2, DVec3};
 use super::Placement;
 use super::csg::Operation;
 use super::filter::Filter;
+use super::look::Looks;
 use super::mesh::Mesh;
 use super::model::Model;
 use super::motion::Motion;
@@ -27,6 +28,7 @@ impl Default for Scene {
             lights: Vec::new(),
             materials: Vec::new(),
             solids: Vec::new(),
+            looks: Looks::default(),
         }
     }
 }

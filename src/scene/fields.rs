@@ -36,6 +36,10 @@ pub const DISTANCE: Range = Range::closed(0.0, 1e12);
 
 /// The tables that hold named things.
 pub const LISTS: [&str; 3] = ["lights", "materials", "solids"];
+/// The table that holds the looks.
+pub const LOOKS: &str = "looks";
+/// The key that names the look that is worn.
+pub const LOOK: &str = "look";
 /// Keys of [`Lens`].
 pub const LENSES: &[&str] = &["fov_degrees", "height"];
 /// Keys of [`LightPlace`].
@@ -105,8 +109,18 @@ pub trait Visit {
 
 /// Visits a whole scene in the order in which it is written.
 pub fn scene(scene: &mut Scene, v: &mut dyn Visit) {
-    let Scene { ambient_light, picture, camera, background, trace, lights, materials, solids } =
-        scene;
+    // A look is no parameter but a list of them: reader and writer know its table.
+    let Scene {
+        ambient_light,
+        picture,
+        camera,
+        background,
+        trace,
+        lights,
+        materials,
+        solids,
+        looks: _,
+    } = scene;
     v.leaf("ambient_light", Need::Optional, Slot::Coefficient(ambient_light, COEFFICIENT));
     v.group("camera", Need::Optional, &mut |v| self::camera(camera, v));
     v.group("picture", Need::Optional, &mut |v| self::picture(picture, v));

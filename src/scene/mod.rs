@@ -15,6 +15,7 @@ pub mod fields;
 pub mod filter;
 mod inside;
 pub mod light;
+pub mod look;
 pub mod mesh;
 pub mod model;
 pub mod motion;
@@ -25,6 +26,7 @@ pub mod path;
 pub mod problem;
 pub mod range;
 pub mod read;
+mod read_looks;
 mod reader;
 pub mod refine;
 pub(crate) mod relative;
@@ -43,6 +45,7 @@ use crate::color::Rgb;
 use csg::Operation;
 use filter::Filter;
 pub use light::{Area, Light, LightPlace};
+use look::Looks;
 use mesh::Mesh;
 use model::Model;
 use motion::Motion;
@@ -71,6 +74,8 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Solids and surfaces, in file order.
     pub solids: Vec<Solid>,
+    /// Named sets of differences, of which one may be worn: it is in all values above.
+    pub looks: Looks,
 }
 
 impl Scene {

@@ -1,5 +1,6 @@
 //! Names every parameter of a scene by a path such as `materials.glass.ior`, and sets it by that name.
 
+use std::collections::{HashMap, HashSet};
 use std::fmt;
 
 use toml::Spanned;
@@ -8,6 +9,7 @@ use toml::de::{DeTable, DeValue};
 use super::Scene;
 use super::check;
 use super::fields::{self, Need, Visit};
+use super::look::Setting;
 use super::problem::suggestion;
 use super::range::{Kind, Range};
 use super::slot::Slot;
@@ -115,6 +117,71 @@ pub fn altered(scene: &Scene, path: &str) -> Option<Scene> {
     found.then_some(altered)
 }
 
+/// The present values of some parameters, in the order of the scene file; unknown paths are left out.
+pub(super) fn values<'a>(scene: &Scene, paths: impl Iterator<Item = &'a str>) -> Vec<Setting> {
+    let (names, wanted) = (Names::of(scene), paths.collect::<HashSet<_>>());
+    let mut found = Vec::new();
+    walk_among(&mut scene.clone(), &wanted, &mut |path, _, slot| {
+        found.push(Setting { path: path.to_owned(), value: slot.text(&names) });
+    });
+    found
+}
+
+/// Makes those settings that can be made, heeding no relation between them; gives them in the order of
+/// the scene file, as the scene's writer spells them.
+pub(super) fn assign_all(scene: &mut Scene, settings: &[Setting]) -> Vec<Setting> {
+    let names = Names::of(scene);
+    let wanted: HashSet<&str> = settings.iter().map(|setting| setting.path.as_str()).collect();
+    let mut made = Vec::new();
+    walk_among(scene, &wanted, &mut |path, key, mut slot| {
+        let Some(setting) = settings.iter().find(|setting| setting.path == path) else { return };
+        let before = slot.text(&names);
+        if assign(&mut slot, key, &setting.value, &names).is_ok() {
+            made.push(Setting { path: path.to_owned(), value: slot.text(&names) });
+        } else {
+            // A value out of its range may have been written.
+            let _ = assign(&mut slot, key, &before, &names);
+        }
+    });
+    made
+}
+
+/// The parameters that two scenes have and that differ, with their values in the first.
+pub(super) fn unequal(a: (&mut Scene, &Names), b: (&mut Scene, &Names)) -> Vec<Setting> {
+    let mut others = HashMap::new();
+    walk(b.0, &mut |path, _, slot| {
+        if slot.kind() != Kind::File {
+            others.insert(path.to_owned(), slot.text(b.1));
+        }
+    });
+    let mut found = Vec::new();
+    walk(a.0, &mut |path, _, slot| {
+        if let Some(other) = others.get(path) {
+            let value = slot.text(a.1);
+            if value != *other {
+                found.push(Setting { path: path.to_owned(), value });
+            }
+        }
+    });
+    found
+}
+
+/// The keys of a path, without quotes; `None` if it is none.
+pub(crate) fn segments(path: &str) -> Option<Vec<String>> {
+    let line = format!("{path} = 0");
+    let root = DeTable::parse(&line).ok()?;
+    let mut keys = Vec::new();
+    let mut table = root.get_ref();
+    loop {
+        let (key, value) = table.iter().next().filter(|_| table.len() == 1)?;
+        keys.push(key.get_ref().to_string());
+        match value.get_ref() {
+            DeValue::Table(inner) => table = inner,
+            _ => return Some(keys),
+        }
+    }
+}
+
 /// Parses `value` and writes it into the slot; after an error: what is wrong, and a way out.
 fn assign(
     slot: &mut Slot<'_>,
@@ -158,12 +225,31 @@ fn keys(line: &str) -> Option<Vec<String>> {
 
 /// Calls `each` with path, key and slot of every value.
 fn walk(scene: &mut Scene, each: &mut dyn FnMut(&str, &'static str, Slot<'_>)) {
-    fields::scene(scene, &mut Walk { prefix: String::new(), each });
+    fields::scene(scene, &mut Walk { prefix: String::new(), wanted: None, each });
+}
+
+/// [`walk`] over some paths alone; nothing is looked into that holds none of them.
+pub(super) fn walk_among(
+    scene: &mut Scene,
+    wanted: &HashSet<&str>,
+    each: &mut dyn FnMut(&str, &'static str, Slot<'_>),
+) {
+    let mut each = |path: &str, key, slot: Slot<'_>| {
+        if wanted.contains(path) {
+            each(path, key, slot);
+        }
+    };
+    fields::scene(
+        scene,
+        &mut Walk { prefix: String::new(), wanted: Some(wanted), each: &mut each },
+    );
 }
 
 struct Walk<'a> {
     /// Ends with a dot, unless it is empty.
     prefix: String,
+    /// The only paths that are looked for, if not all are.
+    wanted: Option<&'a HashSet<&'a str>>,
     each: &'a mut dyn FnMut(&str, &'static str, Slot<'_>),
 }
 
@@ -176,7 +262,10 @@ impl Visit for Walk<'_> {
         let outer = self.prefix.len();
         self.prefix.push_str(&bare_or_quoted(key));
         self.prefix.push('.');
-        body(self);
+        let prefix = self.prefix.as_str();
+        if self.wanted.is_none_or(|wanted| wanted.iter().any(|path| path.starts_with(prefix))) {
+            body(self);
+        }
         self.prefix.truncate(outer);
     }
 }

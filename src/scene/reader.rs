@@ -8,10 +8,11 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
 use super::check;
-use super::fields::{self, Need, Visit};
+use super::fields::{self, LOOK, LOOKS, Need, Visit};
 use super::mesh::{self, Mesh};
 use super::problem::{Mistake, Span, suggestion};
 use super::read::Known;
+use super::read_looks;
 use super::slot::Slot;
 use super::texture;
 use super::toml_text::{bare_or_quoted, quoted};
@@ -40,8 +41,13 @@ pub(super) fn fill<'a>(
     };
     reader.version();
     fields::scene(scene, &mut reader);
+    reader.scope().known.extend([LOOK, LOOKS].map(str::to_owned));
     reader.leave();
     reader.relations(scene, root);
+    // What a look sets stands on what is there without it.
+    if reader.mistakes.is_empty() {
+        reader.mistakes = read_looks::looks(scene, root);
+    }
     reader.mistakes
 }
 

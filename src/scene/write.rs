@@ -2,9 +2,10 @@
 
 use std::collections::HashMap;
 
-use super::fields::{self, LISTS, Need, Visit};
+use super::fields::{self, LISTS, LOOK, LOOKS, Need, Visit};
+use super::look::{Look, Setting};
 use super::slot::Slot;
-use super::toml_text::bare_or_quoted;
+use super::toml_text::{bare_or_quoted, quoted};
 use super::value::Names;
 use super::{Light, Material, Scene, Shape, Solid};
 
@@ -24,7 +25,7 @@ pub fn text(scene: &Scene) -> String {
     }
     for node in &nodes {
         let Content::Table(children) = &node.content else { continue };
-        if LISTS.contains(&node.key.as_str()) {
+        if LISTS.contains(&node.key.as_str()) || node.key == LOOKS {
             for item in children {
                 table(&[&node.key, &item.key], item, &defaults, &mut out);
             }
@@ -41,10 +42,24 @@ pub fn inline(names: &Names, body: &mut dyn FnMut(&mut dyn Visit)) -> String {
 }
 
 /// Every value and table of a scene. Two scenes with equal trees are the same to the last bit, but for
-/// what their mesh files held.
+/// what their mesh files held. Values are those without the worn look, which is named by the first
+/// node; the looks are the last one, with a value per path.
 pub(crate) fn tree(scene: &Scene) -> Vec<Node> {
     let names = Names::of(scene);
-    nodes(&names, &mut |v| fields::scene(&mut scene.clone(), v))
+    let mut plain = scene.undressed();
+    let mut all = nodes(&names, &mut |v| fields::scene(&mut plain, v));
+    let node = |key: &str, content| Node { key: key.to_owned(), need: Need::Optional, content };
+    if let Some(worn) = scene.looks.worn() {
+        all.insert(0, node(LOOK, Content::Value(quoted(worn))));
+    }
+    if !scene.looks.list.is_empty() {
+        let setting = |s: &Setting| node(&s.path, Content::Value(s.value.clone()));
+        let look = |look: &Look| {
+            node(&look.name, Content::Table(look.settings.iter().map(setting).collect()))
+        };
+        all.push(node(LOOKS, Content::Table(plain.looks.list.iter().map(look).collect())));
+    }
+    all
 }
 
 /// Writes an empty line, `[path]` and the lines below it.

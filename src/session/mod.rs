@@ -7,6 +7,7 @@ mod contrast;
 pub mod cost;
 pub mod inspect;
 mod knob;
+pub mod layers;
 pub mod live;
 pub mod part;
 mod pilots;

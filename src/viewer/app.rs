@@ -8,10 +8,12 @@ use eframe::egui::{CentralPanel, Context, Frame, Margin, Panel, Popup, Ui, Vec2,
 use super::Setup;
 use super::chart::ChartPanel;
 use super::command::Command;
+use super::compare::Compare;
 use super::files::Files;
 use super::handles::{Handles, Stage};
 use super::inspector::{Known, Outcome, Selection, inspector_ui, paths};
 use super::keep::kept_text;
+use super::looks::Strip;
 use super::mass::MassPanel;
 use super::menu::{MenuState, menu_ui};
 use super::mixer::Mixer;
@@ -52,6 +54,8 @@ pub struct App {
     pub(super) renaming: Option<Renaming>,
     handles: Handles,
     pub(super) mixer: Mixer,
+    pub(super) strip: Strip,
+    pub(super) compare: Compare,
     /// Whether the picture shows its sample map instead of itself.
     sample_map: bool,
     /// Whether the screen shows something else than it should.
@@ -116,6 +120,8 @@ impl App {
             renaming: None,
             handles: Handles::default(),
             mixer: Mixer::default(),
+            strip: Strip::default(),
+            compare: Compare::default(),
             sample_map: false,
             is_frame_stale: false,
             chart: ChartPanel::new(setup.options),
@@ -150,6 +156,7 @@ impl App {
         let step = step.or(self.chart_ui(ui, &mut edited, &mut changed));
         self.mass_ui(ui);
         self.pixel_ui(ui);
+        let strip = self.strip_ui(ui);
         let outcome = self.panels(ui, &mut edited, &mut commands);
         let pick = outcome.pick.clone();
         changed |= self.apply_outcome(outcome, &mut edited);
@@ -160,6 +167,7 @@ impl App {
         if let Some(step) = step {
             self.document.name_step(step);
         }
+        self.apply_strip(strip);
         self.end_gesture(&ctx);
         if let Some(place) = pick {
             self.ask_image(&ctx, place);
@@ -170,6 +178,7 @@ impl App {
         }
         self.watch_costs();
         self.ask_pixels();
+        self.watch_glances();
         self.autosave(&ctx);
         self.set_title(&ctx);
     }
@@ -188,6 +197,7 @@ impl App {
     fn receive(&mut self, ui: &Ui) {
         self.look_after_screen();
         if let Some(shown) = self.live.take_shown() {
+            self.compare.note(&shown, &self.document.shared_saved_scene());
             self.shown = Some(shown);
             self.is_frame_stale = true;
         }
@@ -260,6 +270,8 @@ impl App {
                 focus_tool: self.picture.focus_tool,
                 handles: !self.handles.hidden,
                 mixer: self.mixer.open,
+                looks: self.strip.open,
+                compare: self.compare.wipe,
                 sample_map: self.sample_map,
                 chart: self.chart.open,
                 mass: self.mass.open,
@@ -347,12 +359,14 @@ impl App {
 
     /// The picture and the handles in it; whether the camera or a light was moved.
     fn picture_ui(&mut self, ui: &mut Ui, edited: &mut Scene) -> bool {
+        self.prepare_comparison(ui);
         let (outcome, handled) = CentralPanel::no_frame()
             .show(ui, |ui| {
                 self.view = ui.available_size();
                 let view = ui.available_rect_before_wrap();
                 let outcome = self.picture.ui(ui, &mut edited.camera);
                 let place = self.picture.place(view, ui.pixels_per_point());
+                self.comparison_ui(ui, place, view);
                 let costs = self.live.costs();
                 let stage = Stage::new(edited, [place, view], self.selection, &costs);
                 let handled = self.handles.ui(ui, &stage, &mut edited.lights);
@@ -459,6 +473,9 @@ impl App {
             Command::FocusTool => self.picture.focus_tool = !self.picture.focus_tool,
             Command::Handles => self.handles.hidden = !self.handles.hidden,
             Command::Mixer => self.mixer.open = !self.mixer.open,
+            Command::Looks => self.strip.open = !self.strip.open,
+            Command::Snapshot => self.take_snapshot(),
+            Command::Compare => self.compare.wipe = !self.compare.wipe,
             Command::SampleMap => self.toggle_sample_map(),
             Command::Chart => self.chart.open = !self.chart.open,
             Command::Mass => self.mass.open = !self.mass.open,

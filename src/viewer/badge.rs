@@ -2,6 +2,7 @@
 
 use eframe::egui::{Align2, Color32, FontId, Role, Sense, Ui, Vec2, WidgetInfo, vec2};
 
+use crate::session::Class;
 use crate::session::cost::{Cost, Pixels};
 
 /// How dear an edit is, for its colour.
@@ -148,6 +149,19 @@ fn dot_color(price: Price, dark: bool) -> Color32 {
         (Price::Dear, false) => Color32::from_rgb(190, 40, 30),
         (Price::Unknown, _) => Color32::GRAY,
     }
+}
+
+/// A line about what switching to another scene costs, with the colour of its dot.
+pub(super) fn class_text(class: Option<Class>, dark: bool) -> (&'static str, Color32) {
+    let (text, price) = match class {
+        None => ("…", Price::Unknown),
+        Some(Class::None) => ("shown", Price::Free),
+        Some(Class::Reshade) => ("instant", Price::Free),
+        Some(Class::Refold) => ("refold", Price::Mixed),
+        Some(Class::Regrow) => ("traces some", Price::Dear),
+        Some(Class::Retrace) => ("traces all", Price::Dear),
+    };
+    (text, dot_color(price, dark))
 }
 
 /// Draws the badge of the control `name`, `width` wide.

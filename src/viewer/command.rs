@@ -55,6 +55,12 @@ pub(super) enum Command {
     Handles,
     /// Whether the light mixer shows.
     Mixer,
+    /// Whether looks and snapshots show.
+    Looks,
+    /// Keeps the picture and its settings in the strip.
+    Snapshot,
+    /// Whether the picture is compared with another one.
+    Compare,
     /// Whether the chart of speed against accuracy shows.
     Chart,
     /// Whether the panel of mass properties shows.
@@ -100,6 +106,9 @@ impl Command {
             Command::FocusTool => "Focus by click",
             Command::Handles => "Light handles",
             Command::Mixer => "Light mixer",
+            Command::Looks => "Looks",
+            Command::Snapshot => "Take a snapshot",
+            Command::Compare => "Compare",
             Command::Chart => "Speed and accuracy",
             Command::Mass => "Mass properties",
             Command::Pixel => "Pixel and its rays",
@@ -144,6 +153,12 @@ impl Command {
             }
             Command::Handles => "Handles in the picture that move and turn the lights",
             Command::Mixer => "All lights side by side: on, solo, stops, colour, temperature",
+            Command::Looks => "Looks and snapshots below the picture, to be switched between",
+            Command::Snapshot => "Keeps picture and settings until the window closes",
+            Command::Compare => {
+                "A wipe between the picture and what was saved, a look or a snapshot; \
+                 hold Space to see that alone"
+            }
             Command::Chart => {
                 "Measures samples, depth, cut-off and adaptive step here, and recommends settings"
             }
@@ -183,6 +198,9 @@ impl Command {
             Command::Handles => keys(Modifiers::NONE, Key::H),
             Command::Mixer => keys(Modifiers::NONE, Key::L),
             Command::Pixel => keys(Modifiers::NONE, Key::I),
+            Command::Looks => keys(Modifiers::NONE, Key::K),
+            Command::Snapshot => keys(Modifiers::NONE, Key::S),
+            Command::Compare => keys(Modifiers::NONE, Key::W),
             Command::New(_)
             | Command::OpenRecent(_)
             | Command::Import
@@ -199,7 +217,7 @@ impl Command {
 
     /// The commands with shortcuts. Those with more modifiers come first, so that Shift-Ctrl-Z is
     /// not taken for Ctrl-Z.
-    pub(super) const WITH_SHORTCUTS: [Command; 20] = [
+    pub(super) const WITH_SHORTCUTS: [Command; 23] = [
         Command::SaveAs,
         Command::Redo,
         Command::Open,
@@ -219,6 +237,9 @@ impl Command {
         Command::Handles,
         Command::Mixer,
         Command::Pixel,
+        Command::Looks,
+        Command::Snapshot,
+        Command::Compare,
         Command::Stop,
     ];
 

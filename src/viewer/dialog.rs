@@ -50,7 +50,8 @@ impl Purpose {
     /// What the files are called and how their names end.
     pub fn filter(self) -> (&'static str, &'static [&'static str]) {
         match self {
-            Purpose::Open | Purpose::Save => ("Rayforest scenes", &["toml"]),
+            Purpose::Open => ("Scenes, and pictures with theirs", &["toml", "png", "exr"]),
+            Purpose::Save => ("Rayforest scenes", &["toml"]),
             Purpose::Export => ("Pictures", &["png", "exr"]),
             Purpose::LocateMesh => ("Meshes", &["obj"]),
             Purpose::LocateImage | Purpose::Image => ("Images", &["png", "jpg", "jpeg", "hdr"]),

@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
-use eframe::egui::{DragValue, Ui};
+use eframe::egui::{Checkbox, DragValue, Ui};
 
 use super::control::typed;
+use crate::film::plates::Region;
 use crate::film::write::Format;
 use crate::scene::MAX_SIDE;
+use crate::session::layers::Extras;
 
 /// A picture file that is being asked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +18,11 @@ pub(super) struct ExportForm {
     pub(super) size: [u32; 2],
     /// The size of the picture shown.
     own_size: [u32; 2],
+    alpha: bool,
+    layers: bool,
+    /// Whether only `region` is written.
+    cut: bool,
+    region: Region,
 }
 
 /// What the person decided.
@@ -30,7 +37,18 @@ pub(super) enum ExportChoice {
 impl ExportForm {
     /// 8 bits at the picture's own size.
     pub(super) fn new(own_size: [u32; 2]) -> ExportForm {
-        ExportForm { format: Format::Png8, size: own_size, own_size }
+        let region = Region { corner: [0, 0], size: own_size };
+        let (alpha, layers, cut) = (false, false, false);
+        ExportForm { format: Format::Png8, size: own_size, own_size, alpha, layers, cut, region }
+    }
+
+    /// What else the file shall hold, in the format that its name asks for.
+    pub(super) fn extras(&self, format: Format) -> Extras {
+        Extras {
+            alpha: self.alpha,
+            layers: self.layers && format == Format::Exr,
+            region: self.cut.then_some(self.region),
+        }
     }
 
     /// How the name of the file ends.
@@ -70,9 +88,13 @@ impl ExportForm {
                 self.size = self.own_size;
             }
         });
-        let own = self.size == self.own_size;
+        self.extras_ui(ui);
+        let own = self.size == self.own_size && !self.alpha && !self.cut;
         ui.weak(if own {
-            "The file holds exactly the bytes of the picture shown."
+            "The file holds exactly the bytes of the picture shown, and its scene: opening the \
+             picture opens the scene."
+        } else if self.size == self.own_size {
+            "No ray is cast. The file holds its scene, too: opening the picture opens the scene."
         } else {
             "Another size is traced anew; the window stays usable meanwhile."
         });
@@ -86,5 +108,41 @@ impl ExportForm {
             }
         });
         choice
+    }
+
+    fn extras_ui(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            let about = "Leaves out the background that the eye sees, and writes how much of each \
+                         pixel is covered";
+            ui.checkbox(&mut self.alpha, "Transparent background").on_hover_text(about);
+            let layers = Checkbox::new(&mut self.layers, "Layers");
+            let about = "A layer per light, per material and per bounce, in one OpenEXR file";
+            let response = ui.add_enabled(self.format == Format::Exr, layers);
+            response.on_hover_text(about).on_disabled_hover_text("OpenEXR alone holds layers");
+        });
+        ui.horizontal(|ui| {
+            let about = "Writes a part of the picture alone";
+            ui.checkbox(&mut self.cut, "Region").on_hover_text(about);
+            let Region { corner: [left, top], size: [width, height] } = &mut self.region;
+            let [whole_width, whole_height] = self.size;
+            for (value, most, name) in [
+                (left, whole_width, "left"),
+                (top, whole_height, "top"),
+                (width, whole_width, "width"),
+                (height, whole_height, "height"),
+            ] {
+                let least = u32::from(name == "width" || name == "height");
+                let field = DragValue::new(value).range(least..=most).custom_parser(typed);
+                let response = ui.add_enabled(self.cut, field.update_while_editing(false));
+                let response = response.accessible_name(format!("region {name}"));
+                let about = "In pixels of the picture, from its upper left";
+                response.on_hover_text(about).on_disabled_hover_text("Tick Region first");
+            }
+        });
+        if self.cut
+            && let Err(wrong) = self.region.check(self.size)
+        {
+            ui.colored_label(ui.visuals().error_fg_color, wrong);
+        }
     }
 }

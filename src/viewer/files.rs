@@ -275,6 +275,8 @@ impl App {
         self.selection = Selection::Scene;
         (self.picked, self.renaming) = (None, None);
         self.mixer.forget();
+        self.strip.forget();
+        self.compare.forget();
         self.chart.forget();
         self.mass.forget();
         self.pixel.forget();
@@ -332,7 +334,10 @@ impl App {
             For::Export(form) => {
                 let path = with_ending(&file, Purpose::Export);
                 match form.format_for(&path) {
-                    Ok(format) => self.live.export(Export { path, format, size: form.size }),
+                    Ok(format) => {
+                        let (size, extras) = (form.size, form.extras(format));
+                        self.live.export(Export { path, format, size, extras });
+                    }
                     Err(message) => self.notices.error(message),
                 }
             }

@@ -126,7 +126,7 @@ impl App {
     }
 
     /// Takes an edit as a step of its own.
-    fn step(&mut self, scene: Scene) {
+    pub(super) fn step(&mut self, scene: Scene) {
         self.document.end_gesture();
         self.commit(scene);
         self.document.end_gesture();

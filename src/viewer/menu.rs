@@ -22,6 +22,10 @@ pub(super) struct MenuState<'a> {
     pub(super) handles: bool,
     /// Whether the light mixer shows.
     pub(super) mixer: bool,
+    /// Whether looks and snapshots show.
+    pub(super) looks: bool,
+    /// Whether the picture is compared with another one.
+    pub(super) compare: bool,
     /// Whether the sample map shows in the picture's place.
     pub(super) sample_map: bool,
     /// Whether the chart of speed against accuracy shows.
@@ -69,9 +73,12 @@ pub(super) fn menu_ui(
                 chosen = Some(command);
             }
         }
-        for (command, on) in
-            [(Command::CameraTool, state.camera_tool), (Command::Mixer, state.mixer)]
-        {
+        for (command, on) in [
+            (Command::CameraTool, state.camera_tool),
+            (Command::Mixer, state.mixer),
+            (Command::Looks, state.looks),
+            (Command::Compare, state.compare),
+        ] {
             let button = Button::selectable(on, command.name());
             if ui.add(button).on_hover_text(command.about()).clicked() {
                 chosen = Some(command);
@@ -197,11 +204,14 @@ fn view_menu(
         item(ui, command, chosen);
     }
     item(ui, Command::CameraTool, chosen);
+    item(ui, Command::Snapshot, chosen);
     ui.separator();
     for (command, on) in [
         (Command::FocusTool, state.focus_tool),
         (Command::Handles, state.handles),
         (Command::Mixer, state.mixer),
+        (Command::Looks, state.looks),
+        (Command::Compare, state.compare),
         (Command::Chart, state.chart),
         (Command::Mass, state.mass),
         (Command::Pixel, state.pixel),

@@ -1,7 +1,7 @@
 //! The picture on the screen: zoom to the pointer, pan, 1:1, clicks that pick, drags that move the camera.
 
 use eframe::egui::{
-    Color32, ColorImage, CursorIcon, PointerButton, Pos2, Rect, Response, Role, Sense,
+    Color32, ColorImage, CursorIcon, Painter, PointerButton, Pos2, Rect, Response, Role, Sense,
     TextureHandle, TextureId, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
@@ -50,6 +50,71 @@ impl Texture {
     }
 }
 
+/// A picture on the graphics card.
+#[derive(Default)]
+struct Layer {
+    pieces: Vec<Piece>,
+    frame_size: [u32; 2],
+}
+
+impl Layer {
+    /// Takes a frame of a picture of `size` pixels.
+    fn set(&mut self, ui: &Ui, name: &str, frame: &Frame, size: [u32; 2]) {
+        let sharp = options(frame.size == size);
+        if self.frame_size != frame.size {
+            self.frame_size = frame.size;
+            self.pieces.clear();
+        }
+        self.pieces.retain(|piece| matches!(piece.texture, Texture::Copied(_)));
+        for (i, &rect) in pieces(frame.size).iter().enumerate() {
+            let image = image(frame, rect);
+            match self.pieces.get_mut(i).map(|piece| &mut piece.texture) {
+                Some(Texture::Copied(handle)) => handle.set(image, sharp),
+                _ => {
+                    let texture = ui.ctx().load_texture(format!("{name} {i}"), image, sharp);
+                    let texture = Texture::Copied(texture);
+                    self.pieces.push(Piece { texture, rect: bounds(rect) });
+                }
+            }
+        }
+    }
+
+    /// Takes a picture of `size` pixels that the card has drawn.
+    fn set_drawn(&mut self, textures: &[(TextureId, CardPiece)], size: [u32; 2]) {
+        self.frame_size = size;
+        let piece = |&(id, CardPiece { corner, size }): &(TextureId, CardPiece)| {
+            let [[left, top], [width, height]] = [corner, size].map(|n| n.map(|n| n as usize));
+            let rect = bounds([left, top, left + width, top + height]);
+            Piece { texture: Texture::Drawn(id), rect }
+        };
+        self.pieces = textures.iter().map(piece).collect();
+    }
+
+    /// Paints it into `place`.
+    fn paint(&self, painter: &Painter, place: Rect) {
+        let frame = vec2(self.frame_size[0] as f32, self.frame_size[1] as f32);
+        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        for piece in &self.pieces {
+            let min = place.min + piece.rect.min.to_vec2() / frame * place.size();
+            let max = place.min + piece.rect.max.to_vec2() / frame * place.size();
+            let rect = Rect::from_min_max(min, max);
+            painter.image(piece.texture.id(), rect, whole, Color32::WHITE);
+        }
+    }
+}
+
+/// How much of the other picture is seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Beside {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// What is left of this share of the picture's width.
+    Left(f32),
+    /// All of it.
+    Whole,
+}
+
 /// The picture and how it is looked at.
 pub(super) struct PictureView {
     zoom: Zoom,
@@ -57,8 +122,10 @@ pub(super) struct PictureView {
     center: Pos2,
     /// `picture.size` of the scene that is shown.
     size: Vec2,
-    pieces: Vec<Piece>,
-    frame_size: [u32; 2],
+    picture: Layer,
+    other: Layer,
+    /// How much of the other picture is seen.
+    pub(super) beside: Beside,
     /// Whether drags move the camera.
     pub(super) camera_tool: bool,
     /// Whether a click focuses the camera.
@@ -85,8 +152,9 @@ impl PictureView {
             zoom: Zoom::Fit,
             center: Pos2::ZERO,
             size: Vec2::ZERO,
-            pieces: Vec::new(),
-            frame_size: [0, 0],
+            picture: Layer::default(),
+            other: Layer::default(),
+            beside: Beside::Nothing,
             camera_tool: false,
             focus_tool: false,
         }
@@ -95,41 +163,24 @@ impl PictureView {
     /// Takes a new frame of a picture of `size` pixels; a coarse frame has fewer.
     pub(super) fn set_frame(&mut self, ui: &Ui, frame: &Frame, size: [u32; 2]) {
         self.take_size(size);
-        let cut = pieces(frame.size);
-        if self.frame_size != frame.size {
-            self.frame_size = frame.size;
-            self.pieces.clear();
-        }
-        self.pieces.retain(|piece| matches!(piece.texture, Texture::Copied(_)));
-        for (i, &rect) in cut.iter().enumerate() {
-            let image = image(frame, rect);
-            match self.pieces.get_mut(i).map(|piece| &mut piece.texture) {
-                Some(Texture::Copied(handle)) => handle.set(image, options(frame.size == size)),
-                _ => {
-                    let name = format!("picture {i}");
-                    let sharp = options(frame.size == size);
-                    let texture = Texture::Copied(ui.ctx().load_texture(name, image, sharp));
-                    self.pieces.push(Piece { texture, rect: bounds(rect) });
-                }
-            }
-        }
+        self.picture.set(ui, "picture", frame, size);
+    }
+
+    /// Takes the picture to compare with.
+    pub(super) fn set_other(&mut self, ui: &Ui, frame: &Frame) {
+        self.other.set(ui, "other picture", frame, frame.size);
     }
 
     /// Takes a picture of `size` pixels that the graphics card has drawn.
     pub(super) fn set_card(&mut self, textures: &[(TextureId, CardPiece)], size: [u32; 2]) {
         self.take_size(size);
-        self.frame_size = size;
-        let piece = |&(id, CardPiece { corner, size }): &(TextureId, CardPiece)| {
-            let [[left, top], [width, height]] = [corner, size].map(|n| n.map(|n| n as usize));
-            let rect = bounds([left, top, left + width, top + height]);
-            Piece { texture: Texture::Drawn(id), rect }
-        };
-        self.pieces = textures.iter().map(piece).collect();
+        self.picture.set_drawn(textures, size);
     }
 
     /// Lets go of everything on the graphics card.
     pub(super) fn forget_textures(&mut self) {
-        self.pieces.clear();
+        self.picture.pieces.clear();
+        self.other.pieces.clear();
     }
 
     fn take_size(&mut self, size: [u32; 2]) {
@@ -209,13 +260,15 @@ impl PictureView {
     fn paint(&self, ui: &Ui, view: Rect, place: Rect) {
         let painter = ui.painter_at(view);
         painter.rect_filled(view, 0.0, Color32::from_gray(40));
-        let frame = vec2(self.frame_size[0] as f32, self.frame_size[1] as f32);
-        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-        for piece in &self.pieces {
-            let min = place.min + piece.rect.min.to_vec2() / frame * place.size();
-            let max = place.min + piece.rect.max.to_vec2() / frame * place.size();
-            let rect = Rect::from_min_max(min, max);
-            painter.image(piece.texture.id(), rect, whole, Color32::WHITE);
+        self.picture.paint(&painter, place);
+        match self.beside {
+            Beside::Nothing => {}
+            Beside::Left(share) => {
+                let right = place.left() + place.width() * share;
+                let clip = Rect::from_min_max(view.min, pos2(right, view.bottom()));
+                self.other.paint(&painter.with_clip_rect(clip.intersect(view)), place);
+            }
+            Beside::Whole => self.other.paint(&painter, place),
         }
     }
 
@@ -305,6 +358,12 @@ fn pieces(size: [u32; 2]) -> Vec<[usize; 4]> {
 
 fn bounds([left, top, right, bottom]: [usize; 4]) -> Rect {
     Rect::from_min_max(pos2(left as f32, top as f32), pos2(right as f32, bottom as f32))
+}
+
+/// A small frame as egui wants it.
+pub(super) fn whole_image(frame: &Frame) -> ColorImage {
+    let [width, height] = frame.size.map(|n| n as usize);
+    image(frame, [0, 0, width, height])
 }
 
 /// One piece of a frame as egui wants it.

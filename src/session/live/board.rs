@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use fearless_simd::{Level, dispatch};
 
-use super::{Event, Inspected, Job, Picked, Shown, Status};
+use super::{Event, Glimpse, Inspected, Job, Picked, Shown, Status};
 use crate::forest::camera::View;
 use crate::geometry::{Geometry, Stack};
 use crate::progress::Progress;
@@ -30,6 +30,7 @@ struct Face {
     heard: u64,
     events: Vec<Event>,
     costs: Arc<BTreeMap<String, Cost>>,
+    glimpses: Arc<Vec<Glimpse>>,
     /// Where the person looks, in pixels of the picture.
     cursor: Option<[f64; 2]>,
     pixels: Arc<BTreeMap<[u32; 2], Inspected>>,
@@ -129,6 +130,14 @@ impl Board {
     pub(super) fn price(&self, costs: BTreeMap<String, Cost>) {
         self.face().costs = Arc::new(costs);
         self.wake();
+    }
+
+    pub(super) fn glimpse(&self, glimpses: Vec<Glimpse>) {
+        self.face().glimpses = Arc::new(glimpses);
+    }
+
+    pub(super) fn glimpses(&self) -> Arc<Vec<Glimpse>> {
+        self.face().glimpses.clone()
     }
 
     /// Cancels the job that the status tells of, at once; gives what the rest of the cancel is for.

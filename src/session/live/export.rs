@@ -7,23 +7,25 @@ use std::sync::mpsc::{Receiver, Sender};
 use super::shader::Message;
 use super::tracer::Compiled;
 use super::{Export, guarded, pool};
-use crate::film::Film;
+use crate::film::plates::Plates;
 use crate::film::write::{Format, check_writable, picture};
 use crate::forest::Forest;
 use crate::geometry::Geometry;
 use crate::progress::Progress;
 use crate::scene::{Scene, write};
+use crate::session::layers::Extras;
 use crate::session::trace::{Kept, TraceError};
 use crate::session::{Options, Session, Start};
 
 /// A picture file to make.
 pub(super) enum Task {
     /// Of light that is there.
-    Write { path: PathBuf, format: Format, film: Film, scene: Arc<Scene> },
+    Write { path: PathBuf, format: Format, plates: Plates, scene: Arc<Scene> },
     /// Of a scene that has the size of the file.
     Render {
         path: PathBuf,
         format: Format,
+        extras: Extras,
         scene: Arc<Scene>,
         known: Option<Compiled>,
         progress: Arc<Progress>,
@@ -52,29 +54,33 @@ pub(super) fn run(options: Options, tasks: Receiver<Task>, results: Sender<Messa
 }
 
 fn export(options: Options, task: Task) -> Outcome {
-    let (path, format, film, scene) = match task {
-        Task::Write { path, format, film, scene } => (path, format, film, scene),
-        Task::Render { path, format, scene, known, progress } => {
+    let (path, format, plates, scene) = match task {
+        Task::Write { path, format, plates, scene } => (path, format, plates, scene),
+        Task::Render { path, format, extras, scene, known, progress } => {
             check_writable(&path).map_err(|e| e.to_string())?;
-            match film(options, &scene, known, &progress) {
-                Ok(film) => (path, format, film, scene),
+            match session(options, &scene, known, &progress) {
+                Ok(session) => {
+                    let plates = session.plates(extras);
+                    let wrong = |e| format!("{} was not written: {e}", path.display());
+                    (path.clone(), format, plates.map_err(wrong)?, scene)
+                }
                 Err(TraceError::Cancelled) => return Ok(None),
                 Err(error) => return Err(format!("{} was not written: {error}", path.display())),
             }
         }
     };
     let text = write::text(&scene);
-    picture(&path, format, &film, scene.picture.exposure, &text).map_err(|e| e.to_string())?;
+    picture(&path, format, &plates, scene.picture.exposure, &text).map_err(|e| e.to_string())?;
     Ok(Some(path))
 }
 
-/// The light of a scene, traced with threads of its own; nothing of the trace is kept.
-fn film(
+/// A scene, traced with threads of its own; no trees are kept.
+fn session(
     options: Options,
     scene: &Arc<Scene>,
     known: Option<Compiled>,
     progress: &Progress,
-) -> Result<Film, TraceError> {
+) -> Result<Session, TraceError> {
     let known = known.and_then(|compiled| compiled.of(scene));
     let geometry = match known {
         Some(geometry) => geometry,
@@ -82,5 +88,5 @@ fn film(
     };
     let (scene, pool, reuse) = (scene.clone(), pool(options), Forest::default());
     let start = Start { scene, geometry, pool, options, kept: Kept::Matrix, reuse };
-    Ok(Session::begin(start, progress)?.film())
+    Session::begin(start, progress)
 }

@@ -19,7 +19,8 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::cost::Cost;
 use super::inspect::PixelTree;
-use super::{EditReport, Options};
+use super::layers::Extras;
+use super::{Class, EditReport, Options};
 use crate::film::Frame;
 use crate::film::write::Format;
 use crate::forest::counts::SampleMap;
@@ -116,8 +117,37 @@ pub struct Export {
     pub path: PathBuf,
     /// Its format.
     pub format: Format,
-    /// Its size; at the scene's own it holds the bytes that are shown.
+    /// Its size before a region is cut out; at the scene's own it holds the bytes that are shown.
     pub size: [u32; 2],
+    /// What else it holds.
+    pub extras: Extras,
+}
+
+/// Another scene that the person wants to see beside the one shown.
+#[derive(Clone, Debug)]
+pub struct Glance {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// How much smaller its picture is, per side; 1 for the whole picture.
+    pub smaller: u32,
+}
+
+/// What there is to be seen of a [`Glance`].
+#[derive(Clone, Debug)]
+pub struct Glimpse {
+    scene: Arc<Scene>,
+    smaller: u32,
+    /// Exactly what a fresh trace of the scene gives, made smaller; `None` where that needs rays.
+    pub frame: Option<Arc<Frame>>,
+    /// What showing the scene costs.
+    pub class: Class,
+}
+
+impl Glimpse {
+    /// Whether it is what was wanted: of the same scene, not only of an equal one.
+    pub fn is_of(&self, glance: &Glance) -> bool {
+        Arc::ptr_eq(&self.scene, &glance.scene) && self.smaller == glance.smaller
+    }
 }
 
 /// A pixel taken apart, or why it cannot be.
@@ -253,6 +283,17 @@ impl Live {
     /// What is known of them: of the scene shown, or, for a moment, of the one before.
     pub fn inspected(&self) -> Arc<BTreeMap<[u32; 2], Inspected>> {
         self.board.pixels()
+    }
+
+    /// Names the other scenes that are to be seen from now on. They are shaded while nothing else is to
+    /// be done, from the trees that are there: where those are not enough, only the cost is told.
+    pub fn glance(&self, wanted: Vec<Glance>) {
+        self.order(Message::Glance(wanted));
+    }
+
+    /// What is known of the scenes that are to be seen.
+    pub fn glimpses(&self) -> Arc<Vec<Glimpse>> {
+        self.board.glimpses()
     }
 
     /// Writes a picture of the newest wanted scene, after its trace if that still runs.

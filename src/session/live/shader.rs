@@ -3,6 +3,7 @@
 mod card;
 mod curious;
 mod exports;
+mod glances;
 mod keep;
 mod mend;
 mod show;
@@ -20,7 +21,7 @@ use super::badges::Badges;
 use super::board::{Board, Target};
 use super::mending::Mending;
 use super::tracer::{self, Compiled, Control, Outcome, staged};
-use super::{Event, Export, Stage, export, guarded, pool};
+use super::{Event, Export, Glance, Stage, export, guarded, pool};
 use crate::forest::Forest;
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -29,6 +30,7 @@ use crate::session::regrow::{Patch, Regrow};
 use crate::session::{Class, EditReport, Options, Session, Work};
 use crate::shade::gpu::{Gpu, Product};
 use curious::Curiosity;
+use glances::Glances;
 use keep::Keeping;
 
 /// What the shader is told, by the window and by the other threads.
@@ -48,6 +50,7 @@ pub(super) enum Message {
     DrawOn(Option<Gpu>),
     /// Pixels to be taken apart.
     Inspect(Vec<[u32; 2]>),
+    Glance(Vec<Glance>),
     Export(Export),
     /// A stage before the whole picture.
     Staged {
@@ -189,6 +192,7 @@ pub(super) struct Shader {
     exports: VecDeque<Pending>,
     badges: Badges,
     curious: Curiosity,
+    glances: Glances,
     /// The number of the newest wish.
     heard: u64,
     /// The progress last told, and when.
@@ -230,6 +234,7 @@ impl Shader {
             exports: VecDeque::new(),
             badges: Badges::default(),
             curious: Curiosity::default(),
+            glances: Glances::default(),
             heard: 0,
             told: (0, 0),
             told_at: Instant::now(),
@@ -260,7 +265,8 @@ impl Shader {
     fn patience(&self) -> Duration {
         let working = self.job.is_some() || !self.exports.is_empty();
         let yielded = self.busy_until.map(|t| t.saturating_duration_since(Instant::now()));
-        let idle = [self.badges.wait(), self.keeping_wait(), self.curious_wait()];
+        let idle =
+            [self.badges.wait(), self.keeping_wait(), self.curious_wait(), self.glance_wait()];
         let waits = [working.then_some(TICK), yielded].into_iter().chain(idle);
         waits.flatten().min().unwrap_or(Duration::from_secs(3600))
     }
@@ -281,6 +287,7 @@ impl Shader {
             self.badges.work(shown, &self.board);
             self.work_on_pixels();
             self.work_on_keeping();
+            self.glance();
         }
         if self.in_step() {
             self.cache = None;
@@ -300,6 +307,7 @@ impl Shader {
             Message::Watch(paths) => self.badges.watch(paths),
             Message::DrawOn(gpu) => self.draw_on(gpu),
             Message::Inspect(pixels) => self.curious.want(pixels),
+            Message::Glance(wanted) => self.watch_glances(wanted),
             Message::Export(export) => self.export(export),
             Message::Staged { id, stage, divisor, session } => {
                 self.staged(id, stage, divisor, *session);

@@ -328,7 +328,12 @@ fn opaque(frame: &Frame) -> Vec<u8> {
 }
 
 fn export(window: &mut Window, path: PathBuf, size: [u32; 2]) {
-    window.live.export(Export { path: path.clone(), format: Format::Png8, size });
+    window.live.export(Export {
+        path: path.clone(),
+        format: Format::Png8,
+        size,
+        extras: Extras::default(),
+    });
     window.wait("exported", |w| w.events.contains(&Event::Exported(path.clone())));
 }
 
@@ -369,7 +374,8 @@ fn an_export_is_cancelled_or_fails_and_no_file_is_left() {
     let scene = scene("glass", [64, 40], 64);
     let mut window = Window::showing(&scene);
     let path = folder.path().join("large.png");
-    let wanted = Export { path, format: Format::Png8, size: [1600, 900] };
+    let wanted =
+        Export { path, format: Format::Png8, size: [1600, 900], extras: Extras::default() };
     window.live.export(wanted.clone());
     window.wait("a job", is_tracing);
     assert!(window.status.job.clone().unwrap().what.contains("large.png"));
@@ -393,7 +399,12 @@ fn an_export_of_a_held_wish_is_refused() {
     window.live.cancel();
     window.wait("held", |w| w.status.held);
     let path = folder.path().join("view.png");
-    window.live.export(Export { path, format: Format::Png8, size: scene.picture.size });
+    window.live.export(Export {
+        path,
+        format: Format::Png8,
+        size: scene.picture.size,
+        extras: Extras::default(),
+    });
     window.wait("refused", |w| !w.events.is_empty());
     assert!(matches!(&window.events[..], [Event::Failed(text)] if text.contains("view.png")));
 }

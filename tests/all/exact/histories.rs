@@ -5,6 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 use rayforest::color::Rgb;
+use rayforest::film::plates::Plates;
 use rayforest::film::write::{Format, picture};
 use rayforest::progress::Progress;
 use rayforest::scene::change::Change;
@@ -151,7 +152,7 @@ fn same_files_in_a_fresh_process(session: &Session, what: &str) {
         let (ours, theirs) = (at(&format!("ours.{ending}")), at(&format!("theirs.{ending}")));
         let format = Format::of(&ours, false).unwrap();
         let exposure = session.scene().picture.exposure;
-        picture(&ours, format, &session.film(), exposure, &text).unwrap();
+        picture(&ours, format, &Plates::of(session.film()), exposure, &text).unwrap();
         let run = Command::new(env!("CARGO_BIN_EXE_rayforest"))
             .args([
                 "render".as_ref(),

@@ -5,6 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
+use rayforest::film::plates::Plates;
 use rayforest::film::write::{Format, picture};
 use rayforest::progress::Progress;
 use rayforest::scene::fields::SHAPES;
@@ -37,7 +38,7 @@ fn render(scene: Scene, to: &Path) -> Vec<u8> {
     let options = Options { threads: 2, memory: 1 << 30 };
     let session = Session::open(scene, options, &Progress::default());
     let film = session.unwrap_or_else(|e| panic!("{e}")).film();
-    picture(to, Format::Png8, &film, 0.0, "").expect("a writable folder");
+    picture(to, Format::Png8, &Plates::of(film), 0.0, "").expect("a writable folder");
     decode_png(to).unwrap().2
 }
 

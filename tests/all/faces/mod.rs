@@ -11,6 +11,8 @@ mod convert;
 mod display;
 mod killed;
 mod language;
+mod layers;
+mod looks;
 mod mass;
 mod parts;
 mod window;

@@ -5,6 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
+use rayforest::film::plates::Plates;
 use rayforest::film::write::{Format, picture};
 
 use super::picture::Picture;
@@ -19,7 +20,7 @@ fn shown(name: &str, diffuse: f32, to: &Path) -> Picture {
     let mut scene = shipped(name);
     scene.materials[0].diffuse = scene.materials[0].diffuse * diffuse;
     let film = open(scene).film();
-    picture(to, Format::Png16, &film, 0.0, "").expect("a writable folder");
+    picture(to, Format::Png16, &Plates::of(film), 0.0, "").expect("a writable folder");
     Picture::of_png16(to)
 }
 

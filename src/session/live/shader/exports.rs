@@ -23,17 +23,23 @@ impl Shader {
     pub(super) fn send_waiting(&mut self) {
         let Some(wanted) = self.wanted.clone() else { return };
         for export in std::mem::take(&mut self.waiting) {
-            let Export { path, format, size } = export.clone();
+            let Export { path, format, size, extras } = export.clone();
             let progress = Arc::<Progress>::default();
             let what = format!("exporting {}", path.display());
             let task = if size != wanted.picture.size {
                 let (scene, known) =
                     (export::Task::resized(&wanted, &export), self.whole.as_ref().map(compiled));
                 let progress = progress.clone();
-                export::Task::Render { path, format, scene, known, progress }
+                export::Task::Render { path, format, extras, scene, known, progress }
             } else if let Some(whole) = self.whole.as_ref().filter(|_| self.in_step()) {
-                let (film, scene) = (whole.film(), whole.shared_scene());
-                export::Task::Write { path, format, film, scene }
+                let (plates, scene) = (whole.plates(extras), whole.shared_scene());
+                match plates {
+                    Ok(plates) => export::Task::Write { path, format, plates, scene },
+                    Err(error) => {
+                        self.refuse(&export, &error);
+                        continue;
+                    }
+                }
             } else if self.hold.is_some() {
                 self.refuse(&export, UNTRACED);
                 continue;

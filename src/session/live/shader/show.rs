@@ -12,6 +12,7 @@ use crate::session::live::{Shown, Stage, Status};
 impl Shader {
     /// Hands the newest picture to the window.
     pub(super) fn show(&mut self) {
+        self.glances.renew();
         self.shown_at = Some(Instant::now());
         self.curious.renew();
         if let Some((frame, scene, geometry)) = self.mending().map(|mending| {

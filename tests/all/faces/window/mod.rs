@@ -13,6 +13,7 @@ mod keep;
 mod keyboard;
 mod kinds;
 mod lists;
+mod looks;
 mod mass;
 mod mixer;
 mod names;
