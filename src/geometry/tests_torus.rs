@@ -92,9 +92,10 @@ struct Faults {
     worst: f64,
 }
 
-/// Roots isolated by 1e-5 count; an answer is one within 1e-4. It may be off by 1e-14 of the distance;
-/// at a line that is δ within a tangent, by 8 ε/√δ.
-fn faults(solver: Solver, rays: &[Known], delta: Option<f64>) -> Faults {
+/// Roots isolated by 1e-5 count; an answer is one within 1e-4. It may be off by 1e-14 of the distance,
+/// or, along the normal, by one ε of it: less than the ray itself is rounded. Near a tangent of the
+/// tube that is a few ε/√δ; a line that clings to the surface along an asymptote is off by more.
+fn faults(solver: Solver, rays: &[Known]) -> Faults {
     let mut faults = Faults::default();
     for Known { minor, o, d, roots } in rays {
         let found = solver(*minor, *o, *d);
@@ -116,12 +117,10 @@ fn faults(solver: Solver, rays: &[Known], delta: Option<f64>) -> Faults {
             }
             let off = near(*t);
             faults.missed += usize::from(off > 1e-4);
-            let plain = 1e-14 * o.length().max(1.0);
-            let tolerance = match delta {
-                Some(delta) if gap <= 1e-2 => plain.max(8.0 * EPS / delta.sqrt()),
-                _ if gap <= 1e-2 => plain * (1.0 + 2.0 * minor / gap),
-                _ => plain,
-            };
+            let size = o.length().max(1.0);
+            let torus = Torus { major: 1.0, minor: *minor };
+            let slope = torus.surface(*o, *d, *t).1.dot(*d).abs();
+            let tolerance = size * (1e-14f64).max(EPS / slope);
             faults.worst = faults.worst.max(off / tolerance);
         }
         let is_root = |f: &f64| roots.iter().any(|(t, _)| (f - t).abs() <= 1e-4);
@@ -130,44 +129,20 @@ fn faults(solver: Solver, rays: &[Known], delta: Option<f64>) -> Faults {
     faults
 }
 
-/// How far within or without a tangent the lines of a category are.
-fn delta(name: &str) -> Option<f64> {
-    name.starts_with("tangent").then(|| name.rsplit('_').next()?.parse().ok()).flatten()
-}
-
 #[test]
 fn torus_in_29_categories_no_exact_root_is_lost_or_invented() {
     let categories = known();
-    assert_eq!((categories.len(), delta("tangent_inside_1e-10")), (29, Some(1e-10)));
+    assert_eq!(categories.len(), 29);
     let mut bad = vec![];
     for (name, rays) in &categories {
         assert_eq!(rays.len(), 60);
-        let faults = faults(ours, rays, delta(name));
+        let faults = faults(ours, rays);
         let Faults { missed, spurious, odd, worst } = faults;
-        if missed + spurious + odd > 0 || worst > reached(name) {
+        if missed + spurious + odd > 0 || worst > 1.0 {
             bad.push(format!("{name}: {faults:?}"));
         }
     }
     assert_eq!(bad, [""; 0]);
-}
-
-/// How many tolerances the worst root of a category is off at most; one where the demand is met.
-fn reached(name: &str) -> f64 {
-    match name {
-        _ if delta(name).is_some() => 16.0,
-        // Its closest pair of roots is 0.011 apart.
-        "secondary:_origin_on_surface_r=.3" => 1.25,
-        _ => 1.0,
-    }
-}
-
-#[test]
-#[ignore = "near tangents are up to 120 ε/√δ off, not 8; a pair of roots 0.011 apart 1.13e-14, not 1e-14"]
-fn torus_near_tangents_are_off_by_eight_roundings_at_most() {
-    for (name, rays) in known() {
-        let worst = faults(ours, &rays, delta(&name)).worst;
-        assert!(worst <= 1.0, "{name}: {worst} × the tolerance");
-    }
 }
 
 #[test]
@@ -175,7 +150,7 @@ fn torus_lost_invented_odd_and_imprecise_roots_are_noticed() {
     let categories = known();
     let (name, rays) = &categories[0];
     assert_eq!(name, "generic_r=.3_d=5");
-    let of = |solver: Solver| faults(solver, rays, None);
+    let of = |solver: Solver| faults(solver, rays);
     assert!(of(|r, o, d| Roots::of(ours(r, o, d).all().iter().copied().skip(1))).missed > 0);
     let invented: Solver =
         |r, o, d| Roots::of(ours(r, o, d).all().iter().flat_map(|t| [*t, t + 1.0]));
@@ -184,7 +159,7 @@ fn torus_lost_invented_odd_and_imprecise_roots_are_noticed() {
     assert!(of(odd).odd > 0);
     assert!(of(|r, o, d| Roots::of(ours(r, o, d).all().iter().map(|t| t + 1e-12))).worst > 1.0);
     let closed: usize =
-        categories.iter().map(|(_, rays)| faults(ferrari_shifted, rays, None).missed).sum();
+        categories.iter().map(|(_, rays)| faults(ferrari_shifted, rays).missed).sum();
     assert!(closed > 0, "a closed solution loses roots");
 }
 

@@ -50,7 +50,7 @@ pub(super) struct Compare {
     /// Whether the other picture needs rays, so that it cannot be shown.
     needs_rays: bool,
     /// What is on the graphics card.
-    painted: Option<Arc<Frame>>,
+    pub(super) painted: Option<Arc<Frame>>,
     /// What the session was told last to look at.
     wanted: Vec<Glance>,
 }

@@ -122,14 +122,20 @@ impl App {
             Some(fault @ GpuError::Lost(_)) => {
                 self.screen = None;
                 self.live.draw_on(None);
-                self.picture.forget_textures();
-                self.is_frame_stale = true;
+                self.forget_textures();
                 self.is_moving = true;
                 self.notices.error(format!("{fault}; nothing of your work is lost"));
             }
             Some(fault) => self.notices.error(fault.to_string()),
             None => {}
         }
+    }
+
+    /// Lets go of all pictures on the card.
+    fn forget_textures(&mut self) {
+        self.picture.forget_textures();
+        self.compare.painted = None;
+        self.is_frame_stale = true;
     }
 
     /// Whether the card of this window is gone: what shows is not seen any more.
@@ -142,8 +148,7 @@ impl App {
         style::set_up(ctx);
         style::apply(ctx, &self.settings);
         *self.waker.lock().unwrap_or_else(PoisonError::into_inner) = ctx.clone();
-        self.picture.forget_textures();
-        self.is_frame_stale = true;
+        self.forget_textures();
         self.title.clear();
         self.is_moving = false;
     }

@@ -6,6 +6,7 @@ mod exports;
 mod glances;
 mod keep;
 mod mend;
+mod running;
 mod show;
 
 use std::collections::VecDeque;
@@ -20,9 +21,8 @@ use rayon::ThreadPool;
 use super::badges::Badges;
 use super::board::{Board, Target};
 use super::mending::Mending;
-use super::tracer::{self, Compiled, Control, Outcome, staged};
+use super::tracer::{self, Compiled, Outcome, staged};
 use super::{Event, Export, Glance, Stage, export, guarded, pool};
-use crate::forest::Forest;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::scene::change::Change;
@@ -32,6 +32,7 @@ use crate::shade::gpu::{Gpu, Product};
 use curious::Curiosity;
 use glances::Glances;
 use keep::Keeping;
+use running::Running;
 
 /// What the shader is told, by the window and by the other threads.
 pub(super) enum Message {
@@ -78,8 +79,6 @@ pub(super) enum Message {
 const YIELD: Duration = Duration::from_millis(150);
 /// How often the window is told of a job's progress.
 const TICK: Duration = Duration::from_millis(50);
-/// A first stage that takes longer than this is not finished for its own sake.
-const PATIENCE: Duration = Duration::from_millis(500);
 
 const UNTRACED: &str =
     "the picture was not traced to its end: let it be traced, and export it again";
@@ -91,63 +90,6 @@ struct Preview {
     divisor: u32,
     /// The scene shown, at its full size.
     scene: Arc<Scene>,
-}
-
-/// A trace that the tracer works on, or a cache that it opens.
-struct Running {
-    id: u64,
-    scene: Arc<Scene>,
-    /// What is done, and why.
-    verb: &'static str,
-    reason: String,
-    control: Arc<Control>,
-    reuse: Arc<Mutex<Option<Forest>>>,
-    taken: Instant,
-    /// Cancelled for the sake of another scene; otherwise a cancel was the person's.
-    dropped: bool,
-    /// What of the whole picture is grown again, instead of all.
-    mending: Option<Mending>,
-}
-
-impl Running {
-    /// A trace whose number is not known yet.
-    fn new(scene: Arc<Scene>, taken: Instant) -> Running {
-        Running {
-            id: 0,
-            scene,
-            verb: "tracing",
-            reason: String::new(),
-            control: Arc::default(),
-            reuse: Arc::default(),
-            taken,
-            dropped: false,
-            mending: None,
-        }
-    }
-
-    /// Goes on if its rays are those of `wanted`.
-    fn consider(&mut self, wanted: &Scene) {
-        if Change::between(&self.scene, wanted).moves_rays.is_some() {
-            self.supersede();
-        } else {
-            self.control.superseded.store(false, Relaxed);
-        }
-    }
-
-    /// Another scene waits. A first stage is finished all the same, so that a camera that is
-    /// dragged without rest shows pictures.
-    fn supersede(&mut self) {
-        if self.control.past_first.load(Relaxed) || self.taken.elapsed() > PATIENCE {
-            self.drop_it();
-        } else {
-            self.control.superseded.store(true, Relaxed);
-        }
-    }
-
-    fn drop_it(&mut self) {
-        self.dropped = true;
-        self.control.progress.cancel();
-    }
 }
 
 /// A wish that is not traced.
