@@ -4,7 +4,7 @@
 //! rays along the three axes find where it is; moments up to the second are integrated exactly along
 //! each ray. Every cell of a grid gets two independent rays, and how much they differ states the error.
 //! Plain primitives have their closed form beside it. What is made of several materials is a region of
-//! each (see [`regions`]).
+//! each (see `regions`).
 
 mod closed_form;
 mod eigen;
