@@ -26,7 +26,7 @@ pub struct Stack {
 }
 
 impl Stack {
-    /// Scratch that is deep enough for `geometry`, and for any other.
+    /// Scratch for the queries of `geometry` alone: it remembers where what moves in it was.
     pub fn new(geometry: &super::Geometry) -> Stack {
         assert!(geometry.hierarchy.stack_needed() <= STACK, "build bounds the depth");
         let moment = RefCell::new(Moment::new(&geometry.primitives, 0.0));
