@@ -397,11 +397,34 @@ impl Session {
         self.pool = pool.clone();
     }
 
+    /// Draws some tiles, at once or when [`Session::catch_up`] is called.
     fn draw(&mut self, tiles: Tiles) {
+        self.canvas.owe(tiles);
+        if !self.canvas.waits {
+            self.catch_up();
+        }
+    }
+
+    /// Lets drawing wait from now on, or no longer: somebody else shows the picture.
+    pub(super) fn defer(&mut self, waits: bool) {
+        self.canvas.waits = waits;
+    }
+
+    /// Whether the frame waits to be drawn.
+    pub(super) fn owes_frame(&self) -> bool {
+        self.canvas.owes()
+    }
+
+    /// Draws what waits.
+    pub(super) fn catch_up(&mut self) {
+        if !self.canvas.owes() {
+            return;
+        }
+        let owed = self.canvas.take_owed();
         let gain = exposure_factor(self.scene.picture.exposure);
         let values = &self.terms.values;
         let frame = self.canvas.edit();
-        cpu::frame(&self.pool, &self.transport, values, gain, tiles, frame);
+        cpu::frame(&self.pool, &self.transport, values, gain, Tiles::Marked(&owed), frame);
     }
 
     /// Draws the present trees as `scene` shows them, as far as they reach: pixels that a plan for it
@@ -526,11 +549,13 @@ impl Session {
 
     /// The picture as shown.
     pub fn frame(&self) -> &Frame {
+        assert!(!self.canvas.owes(), "the frame is asked for when it is drawn");
         self.canvas.newest()
     }
 
     /// The same, to be kept: it stays what it is when the session is edited.
     pub fn shared_frame(&self) -> Arc<Frame> {
+        assert!(!self.canvas.owes(), "the frame is asked for when it is drawn");
         self.canvas.newest().clone()
     }
 

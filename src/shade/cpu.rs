@@ -27,7 +27,8 @@ pub enum Tiles<'a> {
 }
 
 impl Tiles<'_> {
-    fn has(self, tile: usize) -> bool {
+    /// Whether this tile is one of them.
+    pub fn has(self, tile: usize) -> bool {
         match self {
             Tiles::All => true,
             Tiles::Marked(marks) => marks[tile],

@@ -198,6 +198,7 @@ impl App {
         self.look_after_screen();
         if let Some(shown) = self.live.take_shown() {
             self.compare.note(&shown, &self.document.shared_saved_scene());
+            self.complete_snapshots(&shown);
             self.shown = Some(shown);
             self.is_frame_stale = true;
         }
@@ -223,7 +224,11 @@ impl App {
                 (Some(card), Some(screen)) => {
                     self.picture.set_card(screen.textures(card), size);
                 }
-                _ => self.picture.set_frame(ui, &shown.frame, size),
+                _ => {
+                    if let Some(frame) = &shown.frame {
+                        self.picture.set_frame(ui, frame, size);
+                    }
+                }
             },
         }
     }

@@ -97,11 +97,11 @@ impl Compare {
     /// Notes the saved scene's picture when it is shown.
     pub(super) fn note(&mut self, shown: &Shown, saved: &Arc<Scene>) {
         let is_known = |(scene, _): &(Arc<Scene>, _)| Arc::ptr_eq(scene, saved);
-        if shown.stage == Stage::Whole
+        if let Some(frame) = shown.frame.as_ref().filter(|_| shown.stage == Stage::Whole)
             && !self.saved.as_ref().is_some_and(is_known)
             && shown.scene == *saved
         {
-            self.saved = Some((saved.clone(), shown.frame.clone()));
+            self.saved = Some((saved.clone(), frame.clone()));
         }
     }
 }
@@ -145,7 +145,7 @@ impl App {
             Reference::Look(_) => None,
             Reference::Snapshot(name) => {
                 let found = self.strip.snapshots.iter().find(|s| s.name == *name);
-                found.map(|snapshot| snapshot.frame.clone())
+                found.and_then(|snapshot| snapshot.frame.clone())
             }
         }
     }

@@ -17,7 +17,7 @@ use crate::film::Frame;
 use crate::film::sheet::reduced;
 use crate::scene::Scene;
 use crate::session::Class;
-use crate::session::live::{Glance, Glimpse, Stage};
+use crate::session::live::{Glance, Glimpse, Shown, Stage};
 
 /// Largest thumbnail, in pixels.
 const THUMB: [u32; 2] = [128, 72];
@@ -50,8 +50,8 @@ struct LookCard {
 pub(super) struct Snapshot {
     pub(super) name: String,
     pub(super) scene: Arc<Scene>,
-    /// The whole picture of the scene.
-    pub(super) frame: Arc<Frame>,
+    /// The whole picture of the scene, once the processor has drawn it.
+    pub(super) frame: Option<Arc<Frame>>,
     thumb: Option<TextureHandle>,
 }
 
@@ -220,13 +220,13 @@ impl Strip {
     fn snapshots_ui(&mut self, ui: &mut Ui, reference: &Reference, outcome: &mut StripOutcome) {
         for (i, snapshot) in self.snapshots.iter_mut().enumerate() {
             let this = Reference::Snapshot(snapshot.name.clone());
-            let thumb = snapshot.thumb.get_or_insert_with(|| {
-                let small = reduced(&snapshot.frame, smaller(snapshot.frame.size));
-                texture(ui, &snapshot.name, &small)
-            });
+            if let (None, Some(frame)) = (&snapshot.thumb, &snapshot.frame) {
+                let small = reduced(frame, smaller(frame.size));
+                snapshot.thumb = Some(texture(ui, &snapshot.name, &small));
+            }
             let face = Face {
                 label: &snapshot.name,
-                texture: Some(thumb),
+                texture: snapshot.thumb.as_ref(),
                 below: &snapshot.name,
                 is_on: false,
                 is_dear: false,
@@ -428,6 +428,14 @@ impl App {
         let mut edited = scene.clone();
         edited.looks.rename(from, to);
         self.step(edited);
+    }
+
+    /// Gives snapshots their picture that were taken before the processor had drawn it.
+    pub(super) fn complete_snapshots(&mut self, shown: &Shown) {
+        let lacking = self.strip.snapshots.iter_mut().filter(|snapshot| snapshot.frame.is_none());
+        for snapshot in lacking.filter(|snapshot| Arc::ptr_eq(&snapshot.scene, &shown.scene)) {
+            snapshot.frame = shown.frame.clone();
+        }
     }
 
     /// Keeps the picture shown and its settings.

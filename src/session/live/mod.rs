@@ -47,8 +47,9 @@ pub enum Stage {
 /// [`Stage::Whole`]; coarser stages show the same scene with fewer pixels or samples.
 #[derive(Clone)]
 pub struct Shown {
-    /// The picture; at a coarse stage smaller than `scene.picture.size`.
-    pub frame: Arc<Frame>,
+    /// The picture; at a coarse stage smaller than `scene.picture.size`. `None` where `card` shows it
+    /// and edits come fast: it follows when they rest.
+    pub frame: Option<Arc<Frame>>,
     /// The same on the graphics card that draws whole pictures, if one does: other in the last bits of
     /// its light, so that some pixels differ by a code value.
     pub card: Option<Arc<Picture>>,

@@ -28,7 +28,7 @@ use crate::scene::Scene;
 use crate::scene::change::Change;
 use crate::session::regrow::{Patch, Regrow};
 use crate::session::{Class, EditReport, Options, Session, Work};
-use crate::shade::gpu::{Gpu, Product};
+use crate::shade::gpu::{Gpu, Picture, Product};
 use curious::Curiosity;
 use glances::Glances;
 use keep::Keeping;
@@ -116,6 +116,8 @@ pub(super) struct Shader {
     whole: Option<Session>,
     /// Draws the whole picture on a graphics card too.
     product: Option<Product>,
+    /// What it drew last.
+    on_card: Option<Arc<Picture>>,
     /// Shown instead of the whole picture while there is one.
     preview: Option<Preview>,
     job: Option<Running>,
@@ -163,6 +165,7 @@ impl Shader {
             wanted: None,
             whole: None,
             product: None,
+            on_card: None,
             preview: None,
             job: None,
             jobs: 0,
@@ -205,6 +208,9 @@ impl Shader {
 
     /// How long there is nothing to do, unless a message comes.
     fn patience(&self) -> Duration {
+        if self.may_catch_up() {
+            return Duration::ZERO;
+        }
         let working = self.job.is_some() || !self.exports.is_empty();
         let yielded = self.busy_until.map(|t| t.saturating_duration_since(Instant::now()));
         let idle =
@@ -223,6 +229,8 @@ impl Shader {
         if !idle {
             self.report();
             self.board.wake();
+        } else if self.may_catch_up() {
+            self.catch_up();
         } else if let Some(shown) =
             self.preview.as_mut().map(|p| &mut p.session).or(self.whole.as_mut())
         {
@@ -299,7 +307,9 @@ impl Shader {
     /// Edits and shows the whole picture if that needs no ray; a trace is then for nothing.
     fn reach_whole(&mut self, wanted: &Arc<Scene>, taken: Instant) -> Result<(), Work> {
         let new = || Work::Trace("the scene is new".into());
-        let report = self.whole.as_mut().ok_or_else(new)?.edit_without_rays(wanted)?;
+        let whole = self.whole.as_mut().ok_or_else(new)?;
+        whole.defer(self.product.is_some());
+        let report = whole.edit_without_rays(wanted)?;
         self.preview = None;
         self.hold = None;
         self.job.iter_mut().for_each(Running::drop_it);

@@ -75,11 +75,19 @@ impl Window {
         self.newest.as_ref().unwrap()
     }
 
+    /// The picture shown, of the processor's.
+    fn frame(&self) -> Arc<Frame> {
+        self.shown().frame.clone().expect("the processor has drawn it")
+    }
+
     /// Holds the picture shown to a fresh session of the scene.
     fn shows_whole(&self, scene: &Scene) {
         let shown = self.shown();
         assert_eq!((shown.stage, &*shown.scene), (Stage::Whole, scene));
-        assert!(*shown.frame == *fresh(scene).frame(), "other bytes than a fresh session's");
+        assert!(
+            shown.frame.as_deref() == Some(fresh(scene).frame()),
+            "other bytes than a fresh session's"
+        );
     }
 
     fn last(&self) -> EditReport {
@@ -156,7 +164,7 @@ fn a_picture_that_is_not_the_scenes_is_found() {
     let scene = scene("plain", [32, 20], 1);
     let mut window = Window::showing(&scene);
     let shown = window.newest.as_mut().unwrap();
-    shown.frame = Arc::new(Frame::new(shown.frame.size));
+    shown.frame = Some(Arc::new(Frame::new(scene.picture.size)));
     window.shows_whole(&scene);
 }
 
@@ -217,13 +225,13 @@ fn the_newest_wish_wins() {
 fn undo_during_a_trace_brings_the_same_bytes_back_without_rays() {
     let scene = slow();
     let mut window = Window::showing(&scene);
-    let before = window.shown().frame.clone();
+    let before = window.frame();
     window.want(&with(&scene, "camera.fov_degrees", "30"));
     window.wait("a preview", |w| w.shown().stage < Stage::Whole);
     window.want(&scene);
     window.wait("undone", |w| w.status.in_step);
     assert_eq!(window.shown().stage, Stage::Whole);
-    assert!(*window.shown().frame == *before && *window.shown().scene == scene);
+    assert!(*window.frame() == *before && *window.shown().scene == scene);
     let report = window.last();
     assert_eq!((report.class, report.rays.total()), (Class::None, 0));
     window.wait("no job", |w| !is_tracing(w));
@@ -233,7 +241,7 @@ fn undo_during_a_trace_brings_the_same_bytes_back_without_rays() {
 fn a_cancel_brings_the_whole_picture_back_and_the_wish_is_held() {
     let scene = slow();
     let mut window = Window::showing(&scene);
-    let before = window.shown().frame.clone();
+    let before = window.frame();
     let moved = with(&scene, "camera.fov_degrees", "30");
     window.want(&moved);
     window.wait("a preview", |w| w.shown().stage < Stage::Whole);
@@ -242,7 +250,7 @@ fn a_cancel_brings_the_whole_picture_back_and_the_wish_is_held() {
     window.wait("held", |w| w.status.held && w.shown().stage == Stage::Whole);
     // Promised are 100 ms; a busy machine is given a second.
     assert!(asked.elapsed() < Duration::from_secs(1), "{:?}", asked.elapsed());
-    assert!(*window.shown().frame == *before && *window.shown().scene == scene);
+    assert!(*window.frame() == *before && *window.shown().scene == scene);
     window.wait("no job", |w| !is_tracing(w));
     assert!(!window.status.in_step);
     // An edit of a colour does not trace what was cancelled; a wish that can be shown is shown.
@@ -272,10 +280,10 @@ fn a_cancelled_first_trace_leaves_a_preview_that_is_live() {
     window.live.cancel();
     window.wait("held", |w| w.status.held && !is_tracing(w));
     let edited = with(&scene, "materials.tiles.diffuse", "0.2");
-    let before = window.shown().frame.clone();
+    let before = window.frame();
     window.want(&edited);
     window.wait("edited", |w| *w.shown().scene == edited);
-    assert!(window.shown().stage < Stage::Whole && *window.shown().frame != *before);
+    assert!(window.shown().stage < Stage::Whole && *window.frame() != *before);
     assert!(window.status.held && !is_tracing(&window));
 }
 
@@ -286,7 +294,7 @@ fn a_scene_that_cannot_be_traced_is_reported_and_the_old_picture_stays() {
     let mut window = Window::new(Options { memory: budget, ..OPTIONS });
     window.want(&scene);
     window.wait("whole", |w| w.status.in_step);
-    let before = window.shown().frame.clone();
+    let before = window.frame();
     let large = with(&scene, "picture.size", "[640, 400]");
     window.want(&large);
     window.wait("failed", |w| !w.events.is_empty() && !is_tracing(w));
@@ -294,7 +302,7 @@ fn a_scene_that_cannot_be_traced_is_reported_and_the_old_picture_stays() {
     let status = window.status.clone();
     assert!(status.held && !status.in_step);
     assert_eq!(window.shown().stage, Stage::Whole);
-    assert!(*window.shown().frame == *before && *window.shown().scene == scene);
+    assert!(*window.frame() == *before && *window.shown().scene == scene);
     let other = with(&scene, "camera.eye", "[1, -6, 2]");
     window.want(&other);
     window.wait("another wish", |w| w.status.in_step);
@@ -350,7 +358,7 @@ fn an_export_holds_the_bytes_of_the_view_after_its_trace() {
     assert!(window.status.in_step, "it waited for the picture");
     window.shows_whole(&edited);
     let (bytes, text) = decoded(&path);
-    assert!(bytes == opaque(&window.shown().frame));
+    assert!(bytes == opaque(&window.frame()));
     assert_eq!(text, write::text(&edited));
 }
 
@@ -364,7 +372,10 @@ fn an_export_of_another_size_is_a_render_of_that_size() {
     export(&mut window, path.clone(), [150, 110]);
     let large = with(&scene, "picture.size", "[150, 110]");
     assert!(decoded(&path).0 == opaque(fresh(&large).frame()));
-    assert!(Arc::ptr_eq(&shown.frame, &window.shown().frame), "the view was not disturbed");
+    assert!(
+        Arc::ptr_eq(shown.frame.as_ref().unwrap(), &window.frame()),
+        "the view was not disturbed"
+    );
     assert_eq!((window.last(), window.status.in_step), (last, true));
 }
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::Shader;
 use crate::math::exposure_factor;
+use crate::session::Session;
 use crate::session::live::{Event, guarded};
 use crate::shade::gpu::{Gpu, GpuError, Picture, Product};
 
@@ -14,9 +15,29 @@ impl Shader {
         self.show();
     }
 
+    /// Whether the processor's picture waits because a card shows it, and edits have rested.
+    pub(super) fn may_catch_up(&self) -> bool {
+        let owes = self.whole.as_ref().is_some_and(Session::owes_frame);
+        owes && self.busy_until.is_none()
+    }
+
+    /// Draws the processor's picture, which waited while edits came.
+    pub(super) fn catch_up(&mut self) {
+        let Some(whole) = self.whole.as_mut().filter(|whole| whole.owes_frame()) else { return };
+        whole.catch_up();
+        if self.preview.is_none() && self.mending().is_none() {
+            self.hand_over(self.on_card.clone());
+        }
+    }
+
     /// The whole picture as a card draws it. A card that fails is not asked again: the processor's
     /// picture is there.
     pub(super) fn on_card(&mut self) -> Option<Arc<Picture>> {
+        self.on_card = self.drawn_by_card();
+        self.on_card.clone()
+    }
+
+    fn drawn_by_card(&mut self) -> Option<Arc<Picture>> {
         let (product, whole) = (self.product.as_mut()?, self.whole.as_ref()?);
         let gain = exposure_factor(whole.scene().picture.exposure);
         let (transport, values) = (whole.transport(), &whole.terms().values);

@@ -102,6 +102,7 @@ fn picture(
     present: &Arc<Scene>,
 ) -> Option<Arc<crate::film::Frame>> {
     whole.edit_without_rays(&glance.scene).ok()?;
+    whole.catch_up();
     let frame = match glance.smaller {
         0 | 1 => whole.shared_frame(),
         smaller => Arc::new(reduced(whole.frame(), smaller)),

@@ -1,5 +1,6 @@
 //! Hands pictures, status and progress to the window.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::keep::Keeping;
@@ -8,6 +9,7 @@ use crate::session::Session;
 use crate::session::live::board::{self, Target};
 use crate::session::live::mending::Mending;
 use crate::session::live::{Shown, Stage, Status};
+use crate::shade::gpu::Picture;
 
 impl Shader {
     /// Hands the newest picture to the window.
@@ -19,7 +21,7 @@ impl Shader {
             (mending.frame(), mending.scene.clone(), mending.regrow.geometry.clone())
         }) {
             self.board.show(
-                Shown { frame, card: None, scene, stage: Stage::Mending, map: None },
+                Shown { frame: Some(frame), card: None, scene, stage: Stage::Mending, map: None },
                 geometry,
             );
             self.badges.renew(Stage::Mending, &self.board);
@@ -27,13 +29,21 @@ impl Shader {
             return self.board.wake();
         }
         let card = if self.preview.is_none() { self.on_card() } else { None };
+        self.hand_over(card);
+    }
+
+    /// Hands the newest picture to the window, as the processor and the card have it.
+    pub(super) fn hand_over(&mut self, card: Option<Arc<Picture>>) {
+        if let (None, Some(whole)) = (&card, &mut self.whole) {
+            whole.catch_up();
+        }
         let (session, scene, stage) = match (&self.preview, &self.whole) {
             (Some(p), _) => (&p.session, p.scene.clone(), p.stage),
             (None, Some(whole)) => (whole, whole.shared_scene(), Stage::Whole),
             (None, None) => return,
         };
         let shown = Shown {
-            frame: session.shared_frame(),
+            frame: (!session.owes_frame()).then(|| session.shared_frame()),
             card,
             scene,
             stage,

@@ -16,23 +16,26 @@ fn on_card(gpu: &Gpu, scene: &Scene) -> Window {
 }
 
 fn reached(mut window: Window) -> Window {
-    window.wait("the picture is whole", |w| w.status.in_step);
+    window.wait("the picture is whole and drawn by both", |w| {
+        w.status.in_step && w.newest.as_ref().is_some_and(|shown| shown.frame.is_some())
+    });
     window
 }
 
 /// By how many code values the card's picture differs from the processor's, and in how many pixels.
 fn difference(gpu: &Gpu, shown: &Shown) -> (u8, usize) {
     let card = shown.card.as_ref().expect("a picture of the card's").read(gpu).unwrap();
-    assert_eq!(card.size, shown.frame.size);
-    let most = card.bytes.iter().zip(&shown.frame.bytes).map(|(a, b)| a.abs_diff(*b)).max();
-    let pairs = card.bytes.chunks_exact(4).zip(shown.frame.bytes.chunks_exact(4));
+    let frame = shown.frame.as_ref().expect("a picture of the processor's");
+    assert_eq!(card.size, frame.size);
+    let most = card.bytes.iter().zip(&frame.bytes).map(|(a, b)| a.abs_diff(*b)).max();
+    let pairs = card.bytes.chunks_exact(4).zip(frame.bytes.chunks_exact(4));
     (most.unwrap_or(0), pairs.filter(|(a, b)| a != b).count())
 }
 
 fn assert_alike(gpu: &Gpu, window: &Window, scene: &Scene) {
     window.shows_whole(scene);
     let (most, pixels) = difference(gpu, window.shown());
-    let all = window.shown().frame.bytes.len() / 4;
+    let all = window.frame().bytes.len() / 4;
     assert!(most <= 1 && pixels * 1000 <= all, "{most} code values, {pixels} of {all} pixels");
 }
 
@@ -58,9 +61,28 @@ fn the_card_follows_edits_of_every_class() {
         assert_alike(&gpu, &window, &edited);
         // What was held stays what it was.
         assert!(difference(&gpu, &before).0 <= 1, "{path}");
-        assert!(*window.shown().frame != *before.frame, "{path} = {value} is seen");
+        assert!(Some(window.frame()) != before.frame, "{path} = {value} is seen");
     }
     assert_eq!(window.events, []);
+}
+
+#[test]
+fn a_picture_that_waits_is_drawn_when_it_is_asked_for() {
+    let scene = scene("whitted", [70, 40], 4);
+    let mut session = fresh(&scene);
+    session.defer(true);
+    let before = session.shared_frame();
+    let mut edited = scene.clone();
+    // Of different materials: what waits of the first is not forgotten for the second.
+    for (path, value) in [("materials.tiles.diffuse", "0.3"), ("materials.mirror.specular", "0.1")]
+    {
+        edited = with(&edited, path, value);
+        session.edit_without_rays(&Arc::new(edited.clone())).unwrap();
+        assert!(session.owes_frame(), "{path}");
+    }
+    session.catch_up();
+    assert!(!session.owes_frame() && *session.frame() != *before);
+    assert!(*session.frame() == *fresh(&edited).frame());
 }
 
 #[test]
@@ -74,6 +96,7 @@ fn pictures_before_the_whole_one_are_the_processors() {
         let taken = window.stages.len();
         window.wait("a picture", |w| w.stages.len() > taken || w.status.in_step);
         let Some(shown) = &window.newest else { continue };
+        assert!(shown.card.is_some() || shown.frame.is_some());
         assert_eq!(shown.card.is_some(), shown.stage == Stage::Whole, "{:?}", shown.stage);
     }
     assert!(window.stages.len() > 1, "{:?}", window.stages);

@@ -134,7 +134,7 @@ impl Window {
 
     /// The bytes of the picture shown.
     fn picture(&self) -> Vec<u8> {
-        self.app().shown().expect("a picture is shown").frame.bytes.clone()
+        self.app().shown().expect("a picture is shown").frame.as_ref().expect("drawn").bytes.clone()
     }
 
     /// Presses the one button of this name; a shortcut may stand behind the name.

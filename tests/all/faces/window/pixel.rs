@@ -31,7 +31,8 @@ impl Window {
 
     /// The bytes of a pixel of the picture shown, as the panel writes them.
     fn hex(&self, pixel: [u32; 2]) -> String {
-        let [r, g, b, _] = self.app().shown().expect("a picture").frame.pixel(pixel);
+        let [r, g, b, _] =
+            self.app().shown().expect("a picture").frame.as_ref().expect("drawn").pixel(pixel);
         format!("#{r:02X}{g:02X}{b:02X}")
     }
 
