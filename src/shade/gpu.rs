@@ -84,6 +84,15 @@ impl Product {
         self.matrix.as_ref().map_or(0, |matrix| matrix.parts.len())
     }
 
+    /// Bytes on the card: the matrix and the pictures drawn of it. A card without room for more refuses,
+    /// and [`GpuError::Failed`] says so; what the processor keeps is not of it.
+    pub fn bytes(&self) -> u64 {
+        let arrays = self.matrix.iter().flat_map(|matrix| &matrix.parts).flat_map(|p| &p.arrays);
+        let pixels = |picture: &Arc<Picture>| picture.size.map(u64::from).iter().product::<u64>();
+        let pictures = self.pictures.iter().map(|picture| 4 * pixels(picture));
+        arrays.map(wgpu::Buffer::size).chain(pictures).sum()
+    }
+
     /// The linear picture of all tiles, in the transport's layout; waits for it.
     pub fn film(&mut self, transport: &Transport, values: &[[f32; 4]]) -> Result<Film, GpuError> {
         let device = self.gpu.device.clone();

@@ -220,7 +220,12 @@ impl App {
             [line.center_top(), line.center_bottom()],
             Stroke::new(1.0, Color32::WHITE),
         );
-        painter.circle(line.center(), 6.0, Color32::WHITE, Stroke::new(1.5, Color32::BLACK));
+        let (radius, fill) = match (response.dragged(), response.hovered()) {
+            (true, _) => (8.0, Color32::from_rgb(0x6a, 0xb0, 0xf0)),
+            (false, true) => (8.0, Color32::WHITE),
+            (false, false) => (6.0, Color32::WHITE),
+        };
+        painter.circle(line.center(), radius, fill, Stroke::new(1.5, Color32::BLACK));
         response.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
     }
 }

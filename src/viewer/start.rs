@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 use std::fmt;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -59,7 +60,7 @@ pub fn run(mut opening: Opening) -> Result<(), WindowError> {
     let kept = Kept::default();
     let mut refused = String::new();
     loop {
-        let opened = open(&opening, &kept);
+        let opened = or_lost(&kept, || open(&opening, &kept));
         let lost = kept.borrow().as_ref().is_some_and(App::is_moving);
         opening.graphics = match (opened, opening.graphics) {
             (Ok(()), Graphics::Auto | Graphics::Gpu) if lost => Graphics::Cpu,
@@ -74,6 +75,20 @@ pub fn run(mut opening: Opening) -> Result<(), WindowError> {
             (Err(other), _) => return Err(WindowError::NoGraphics(format!("{refused}{other}"))),
         };
     }
+}
+
+/// What a window gives. egui's painter panics when the card is lost in the middle of a turn: then the
+/// application, which is whole, moves; any other panic goes on.
+fn or_lost(kept: &Kept, window: impl FnOnce() -> eframe::Result) -> eframe::Result {
+    catch_unwind(AssertUnwindSafe(window)).unwrap_or_else(|cause| {
+        let mut kept = kept.borrow_mut();
+        let Some(app) = kept.as_mut() else { resume_unwind(cause) };
+        app.look_after_screen();
+        match app.is_moving() {
+            true => Ok(()),
+            false => resume_unwind(cause),
+        }
+    })
 }
 
 /// winit begins with the place in its own source, which tells the person nothing.
@@ -135,8 +150,14 @@ impl eframe::App for Shell {
         let Some(app) = kept.as_mut() else { return };
         if let Some(file) = &self.lose_at {
             ui.ctx().request_repaint_after(Duration::from_millis(50));
-            if std::fs::remove_file(file).is_ok() {
-                app.lose_screen();
+            match std::fs::read(file) {
+                // In the middle of a turn.
+                Ok(when) if when == b"late" && std::fs::remove_file(file).is_ok() => {
+                    eframe::App::ui(app, ui, frame);
+                    return app.lose_screen();
+                }
+                Ok(_) if std::fs::remove_file(file).is_ok() => app.lose_screen(),
+                _ => {}
             }
         }
         app.look_after_screen();

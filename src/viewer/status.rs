@@ -37,7 +37,7 @@ pub(super) fn status_ui(ui: &mut Ui, status: &Status, shown: Option<&Shown>) -> 
             }
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.label(cache_text(status)).on_hover_text(CACHE);
+            ui.label(cache_text(status)).on_hover_text(cache_about(status));
         });
     });
     command
@@ -100,9 +100,19 @@ fn edit_about(report: &EditReport) -> String {
     }
 }
 
+fn megabytes(bytes: u64) -> f64 {
+    bytes as f64 / 1e6
+}
+
 fn cache_text(status: &Status) -> String {
-    let megabytes = |bytes: u64| bytes as f64 / 1e6;
     format!("kept {:.0} MB of {:.0} MB", megabytes(status.bytes), megabytes(status.budget))
+}
+
+fn cache_about(status: &Status) -> String {
+    match status.card_bytes {
+        0 => CACHE.to_owned(),
+        bytes => format!("{CACHE}; {:.0} MB more on the graphics card", megabytes(bytes)),
+    }
 }
 
 #[cfg(test)]

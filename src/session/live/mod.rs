@@ -84,6 +84,8 @@ pub struct Status {
     pub matrix_bytes: u64,
     /// The budget for them.
     pub budget: u64,
+    /// Bytes on the graphics card that draws the picture, if one does: the card sets their limit.
+    pub card_bytes: u64,
 }
 
 /// A running trace, opening, export or keeping.

@@ -9,7 +9,7 @@ use crate::session::Session;
 use crate::session::live::board::{self, Target};
 use crate::session::live::mending::Mending;
 use crate::session::live::{Shown, Stage, Status};
-use crate::shade::gpu::Picture;
+use crate::shade::gpu::{Picture, Product};
 
 impl Shader {
     /// Hands the newest picture to the window.
@@ -68,6 +68,7 @@ impl Shader {
             bytes: self.whole.as_ref().or(shown).map_or(0, Session::kept_bytes),
             matrix_bytes: self.whole.as_ref().map_or(0, matrix_bytes),
             budget: self.options.memory,
+            card_bytes: self.product.as_ref().map_or(0, Product::bytes),
         };
         let trace = self.job.as_ref().filter(|job| !job.dropped).map(|job| board::Work {
             what: format!("{}: {}", job.verb, job.reason),

@@ -111,8 +111,11 @@ fn a_card_that_comes_late_draws_what_is_shown_and_goes_when_it_is_told_to() {
     window.live.draw_on(Some(gpu.clone()));
     window.wait("the card draws", |w| w.shown().card.is_some());
     assert_alike(&gpu, &window, &scene);
+    let pixels = u64::from(scene.picture.size[0] * scene.picture.size[1]);
+    window.wait("its bytes are told", |w| w.status.card_bytes > 4 * pixels);
     window.live.draw_on(None);
     window.wait("the card rests", |w| w.shown().card.is_none());
+    window.wait("nothing is on it", |w| w.status.card_bytes == 0);
     window.shows_whole(&scene);
 }
 

@@ -93,3 +93,20 @@ fn a_window_whose_graphics_card_is_lost_opens_again_with_all_that_was_done() {
     desk.until_part_like(&mut twin, upper, "everything is there once more");
     assert_eq!(desk.messages(), "");
 }
+
+#[test]
+fn a_card_that_is_lost_in_the_middle_of_a_turn_costs_no_work_either() {
+    let (mut desk, mut twin) = drawn_by_the_card();
+    let first = desk.server.window();
+    drag_diffuse(&mut desk, &mut twin);
+    // What draws the window panics.
+    desk.panics = true;
+    let (lost, begun) = (desk.file("lost"), desk.file("begun"));
+    std::fs::write(&begun, "late").unwrap();
+    std::fs::rename(begun, lost).unwrap();
+    desk.show_window(first);
+    let mut upper = Rect::from_min_max(Pos2::ZERO, status_line().right_top());
+    *upper.bottom_mut() -= 80.0;
+    desk.until_part_like(&mut twin, upper, "everything is there again");
+    assert!(desk.messages().contains("panicked"), "it was in the middle: {}", desk.messages());
+}

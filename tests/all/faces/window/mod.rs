@@ -33,6 +33,7 @@ use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Vec2, vec2}
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use rayforest::session::Options;
+use rayforest::session::live::Shown;
 use rayforest::viewer::dialog::{Answer, ScriptedDialogs};
 use rayforest::viewer::{App, Folders, Setup};
 
@@ -116,8 +117,8 @@ impl Window {
     /// Turns until the picture shown is whole and shows the document's scene.
     fn until_exact(&mut self) {
         self.until("the picture is exact", |app| {
-            let shown = app.shown().is_some_and(|s| *s.scene == *app.document().scene());
-            shown && app.live().status().in_step
+            let drawn = |s: &Shown| s.frame.is_some() && *s.scene == *app.document().scene();
+            app.shown().is_some_and(drawn) && app.live().status().in_step
         });
         self.harness.run_steps(3);
     }
