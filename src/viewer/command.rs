@@ -127,7 +127,7 @@ impl Command {
             Command::Import => "Makes a scene of an OBJ, glTF, GLB or NFF file and opens it",
             Command::Save => "Writes the changed values into the scene file; its comments stay",
             Command::SaveAs => "Saves to another file; paths of meshes are adapted",
-            Command::Export => "Writes the picture as PNG or OpenEXR, at its own size or another",
+            Command::Export => "Writes the picture as PNG, OpenEXR or Radiance HDR, at its own size or another",
             Command::Keep => {
                 "Writes what was traced beside the scene file, so that the next opening casts no ray"
             }

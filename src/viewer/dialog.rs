@@ -50,9 +50,9 @@ impl Purpose {
     /// What the files are called and how their names end.
     pub fn filter(self) -> (&'static str, &'static [&'static str]) {
         match self {
-            Purpose::Open => ("Scenes, and pictures with theirs", &["toml", "png", "exr"]),
+            Purpose::Open => ("Scenes, and pictures with theirs", &["toml", "png", "exr", "hdr"]),
             Purpose::Save => ("Rayforest scenes", &["toml"]),
-            Purpose::Export => ("Pictures", &["png", "exr"]),
+            Purpose::Export => ("Pictures", &["png", "exr", "hdr"]),
             Purpose::LocateMesh => ("Meshes", &["obj"]),
             Purpose::LocateImage | Purpose::Image => ("Images", &["png", "jpg", "jpeg", "hdr"]),
             Purpose::Import => ("OBJ, glTF and NFF", &ENDINGS),
