@@ -17,6 +17,7 @@ mod tests;
 #[cfg(test)]
 mod tests_patch;
 pub mod things;
+pub mod watch;
 
 use std::fmt;
 use std::path::{Path, PathBuf};

@@ -19,6 +19,7 @@ use super::menu::{MenuState, menu_ui};
 use super::mixer::Mixer;
 use super::navigate::focused;
 use super::notice::Notices;
+use super::on_disk::Changes;
 use super::outline::{Lists, outline_ui};
 use super::picture::PictureView;
 use super::pixel::PixelPanel;
@@ -46,6 +47,8 @@ pub struct App {
     pub(super) settings: Settings,
     pub(super) notices: Notices,
     pub(super) files: Files,
+    /// What is on disk and not here.
+    pub(super) changes: Changes,
     /// Where unsaved work is kept; `None` if there is no such place, which was said.
     pub(super) recovery: Option<Recovery>,
     /// Index of the solid that was clicked or selected last.
@@ -115,6 +118,7 @@ impl App {
             settings,
             notices,
             files: Files::new(setup.folders, setup.dialogs),
+            changes: Changes::default(),
             recovery,
             picked: None,
             renaming: None,
@@ -152,6 +156,7 @@ impl App {
         let mut edited = self.document.scene().clone();
         let mut changed = false;
         self.bars(ui, &mut commands);
+        self.on_disk_ui(ui);
         let step = self.mixer_ui(ui, &mut edited, &mut changed);
         let step = step.or(self.chart_ui(ui, &mut edited, &mut changed));
         self.mass_ui(ui);

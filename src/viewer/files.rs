@@ -14,8 +14,10 @@ use super::export::ExportForm;
 use super::import::ImportDone;
 use super::inspector::Selection;
 use super::paints::ImageFor;
+use super::on_disk::{self, Changes};
 use super::path_field::PathField;
 use crate::document::recovery::Found;
+use crate::document::watch::{OnDisk, Watched};
 use crate::document::{Document, DocumentError, Missing, Save, TEMPLATES};
 use crate::scene::Scene;
 use crate::scene::texture::{Image, ImageError};
@@ -118,6 +120,8 @@ pub(super) enum Done {
         result: Box<Result<Image, ImageError>>,
     },
     Imported(ImportDone),
+    /// Another program changed a file.
+    OnDisk(OnDisk),
 }
 
 /// Files, dialogs and threads of the window.
@@ -137,6 +141,8 @@ pub(super) struct Files {
     touched: Option<Instant>,
     /// The window may close without a question.
     leaving: bool,
+    /// The thread that looks at files, once there are some.
+    watcher: Option<Sender<Watched>>,
 }
 
 impl Files {
@@ -153,6 +159,7 @@ impl Files {
             receive,
             touched: None,
             leaving: false,
+            watcher: None,
         }
     }
 
@@ -272,6 +279,7 @@ impl App {
 
     fn replace_document(&mut self, document: Document) {
         self.document = document;
+        self.changes = Changes::default();
         self.selection = Selection::Scene;
         (self.picked, self.renaming) = (None, None);
         self.mixer.forget();
@@ -406,6 +414,8 @@ impl App {
                 self.notices.say(format!("saved {}{lost}", save.path.display()));
                 self.remember_file(&save.path.clone());
                 self.document.saved(save);
+                // What was on disk is replaced, or the document is another file's.
+                self.changes.forget_scene();
                 // Another folder may have changed the paths of meshes, and nothing is unsaved now.
                 self.show_scene();
                 if let Some(next) = next {
@@ -419,6 +429,7 @@ impl App {
             Done::Saved { result: Err(error), .. } => self.notices.error(error.message),
             Done::Image { path, place, result } => self.image_read(&path, &place, *result),
             Done::Imported(done) => self.imported(done),
+            Done::OnDisk(change) => self.changed_on_disk(change),
             Done::Kept(Ok(())) => self.files.discard_recovered(),
             Done::Kept(Err(error)) => {
                 self.notices.error(format!("unsaved work is not kept: {}", error.message));
@@ -438,14 +449,17 @@ impl App {
         }
     }
 
-    /// Keeps unsaved work after a moment's rest, and forgets it once it is saved.
+    /// After a moment's rest: watches the document's files, keeps unsaved work, and forgets it once it is
+    /// saved.
     pub(super) fn autosave(&mut self, ctx: &Context) {
-        let (Some(touched), Some(recovery)) = (self.files.touched, &self.recovery) else { return };
+        let Some(touched) = self.files.touched else { return };
         if let Some(rest) = REST.checked_sub(touched.elapsed()) {
             ctx.request_repaint_after(rest);
             return;
         }
         self.files.touched = None;
+        self.watch_files();
+        let Some(recovery) = &self.recovery else { return };
         if self.document.is_unsaved() {
             let snapshot = recovery.snapshot(&self.document);
             self.files.work(ctx, move || Done::Kept(snapshot.write()));
@@ -453,6 +467,14 @@ impl App {
             recovery.clear();
             self.files.discard_recovered();
         }
+    }
+
+    /// Tells the thread that looks at files which ones they are.
+    fn watch_files(&mut self) {
+        let Files { watcher, send, .. } = &mut self.files;
+        let orders = watcher.get_or_insert_with(|| on_disk::watcher(send.clone(), self.waker.clone()));
+        // A thread that failed is not missed: saving looks at the file itself.
+        let _ = orders.send(self.document.watched());
     }
 
     /// The window closes: nothing unsaved is left that the person did not give up.

@@ -26,6 +26,7 @@ mod mixer;
 mod modal;
 mod navigate;
 mod notice;
+mod on_disk;
 mod operands;
 mod outline;
 mod paints;

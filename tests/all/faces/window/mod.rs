@@ -17,6 +17,7 @@ mod looks;
 mod mass;
 mod mixer;
 mod names;
+mod on_disk;
 mod operands;
 mod paths;
 mod picture;
