@@ -86,7 +86,9 @@ impl Render {
             return Err(Failure::input("--layers: the name of the picture must end in .exr"));
         }
         if self.alpha && format.is_some_and(|format| !format.holds_alpha()) {
-            return Err(Failure::input("--alpha: the name of the picture must end in .png or .exr"));
+            return Err(Failure::input(
+                "--alpha: the name of the picture must end in .png or .exr",
+            ));
         }
         let (scene, options) = self.prepare()?;
         // A mistake in an edit is found before the trace, not after it.

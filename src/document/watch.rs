@@ -186,7 +186,9 @@ impl Known {
         }
         let failed = match kind {
             FileKind::Mesh => match mesh::read_obj(path) {
-                Ok(mesh) if self.meshes.get(name).is_some_and(|known| **known == mesh) => return None,
+                Ok(mesh) if self.meshes.get(name).is_some_and(|known| **known == mesh) => {
+                    return None;
+                }
                 Ok(mesh) => {
                     fresh.meshes.insert(name.clone(), Arc::new(mesh));
                     return None;
@@ -240,7 +242,9 @@ mod tests {
         std::fs::write(&path, format!("{SCENE}# theirs\n")).unwrap();
         assert!(watch.look().is_empty(), "it may still be written");
         let found = watch.look();
-        assert!(matches!(&found[..], [OnDisk::Scene(file, theirs)] if *file == path && theirs.is_ok()));
+        assert!(
+            matches!(&found[..], [OnDisk::Scene(file, theirs)] if *file == path && theirs.is_ok())
+        );
         assert!(two_looks(&mut watch).is_empty());
         std::fs::remove_file(&path).unwrap();
         assert!(matches!(&two_looks(&mut watch)[..], [OnDisk::Gone(file)] if *file == path));

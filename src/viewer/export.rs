@@ -73,7 +73,11 @@ impl ExportForm {
                 (Format::Png8, "PNG, 8 bits", "As shown, sRGB: for screens and the web"),
                 (Format::Png16, "PNG, 16 bits", "As shown, sRGB, in fine steps"),
                 (Format::Exr, "OpenEXR", "Linear light before exposure, 32-bit floats"),
-                (Format::Hdr, "Radiance HDR", "Linear light before exposure, small, exact to 1/128"),
+                (
+                    Format::Hdr,
+                    "Radiance HDR",
+                    "Linear light before exposure, small, exact to 1/128",
+                ),
             ] {
                 ui.radio_value(&mut self.format, format, name).on_hover_text(about);
             }

@@ -101,7 +101,8 @@ fn scene_ui(ui: &mut Ui, title: &str, theirs: &Theirs) -> Option<Choice> {
                 }
             }
             Theirs::Bad(what) => {
-                let text = format!("{title} was changed by another program and is not read: {what}");
+                let text =
+                    format!("{title} was changed by another program and is not read: {what}");
                 ui.colored_label(ui.visuals().error_fg_color, text);
             }
         }

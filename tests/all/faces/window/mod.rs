@@ -80,10 +80,7 @@ impl Window {
             Harness::builder().with_size(size).with_max_steps(1000).build_eframe(|context| {
                 let setup = Setup {
                     options,
-                    folders: Folders {
-                        settings: root.join("config"),
-                        recovery: root.join("unsaved"),
-                    },
+                    folders: Folders::within(&root),
                     dialogs: Box::new(ScriptedDialogs { answers }),
                     scene,
                 };
