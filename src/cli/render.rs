@@ -22,7 +22,7 @@ use crate::session::{Class, EditReport, Options, Session};
 pub(crate) struct Render {
     /// A scene file.
     scene: PathBuf,
-    /// The picture: .png or .exr; with --tile a .part.
+    /// The picture: .png, .exr or .hdr; with --tile a .part.
     #[arg(short, long, value_name = "FILE", required_unless_present = "looks")]
     output: Option<PathBuf>,
     /// The look to put on, of those in the scene file, before --set; '' for none.
@@ -84,6 +84,11 @@ impl Render {
         let format = format.transpose().map_err(Failure::input)?;
         if self.layers && format != Some(Format::Exr) {
             return Err(Failure::input("--layers: the name of the picture must end in .exr"));
+        }
+        if self.alpha && format.is_some_and(|format| !format.holds_alpha()) {
+            return Err(Failure::input(
+                "--alpha: the name of the picture must end in .png or .exr",
+            ));
         }
         let (scene, options) = self.prepare()?;
         // A mistake in an edit is found before the trace, not after it.

@@ -29,7 +29,7 @@ pub(crate) struct Merge {
     /// All parts of the picture, in any order.
     #[arg(required = true)]
     parts: Vec<PathBuf>,
-    /// The picture: .png or .exr.
+    /// The picture: .png, .exr or .hdr.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Bits per channel of a PNG.

@@ -1,5 +1,6 @@
 //! The work of a person: a scene, its file, its history of edits, and what keeps it from being lost.
 
+pub mod examples;
 mod history;
 pub mod looks;
 mod open;
@@ -17,6 +18,7 @@ mod tests;
 #[cfg(test)]
 mod tests_patch;
 pub mod things;
+pub mod watch;
 
 use std::fmt;
 use std::path::{Path, PathBuf};

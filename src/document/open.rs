@@ -83,17 +83,21 @@ impl Document {
         let scene = read::text_with(&text, path, known(&text, &found)?)
             .map_err(|error| with_missing(error.to_string(), &text, folder, &found))?;
         let mut edited = replaced(&scene, &found, folder);
-        edited.each_file(&mut |file| {
-            let place = resolved(&folder.join(&*file));
-            if let Some(place) = place.to_str() {
-                *file = place.to_owned();
-            }
-        });
+        named_absolutely(&mut edited, folder);
         let mut document = Document::of(&file_name(path), &text, scene);
         document.history = History::new(edited);
         document.refresh();
         Ok(document)
     }
+}
+
+/// Names the mesh and image files of a scene in `folder` absolutely.
+pub(super) fn named_absolutely(scene: &mut Scene, folder: &Path) {
+    scene.each_file(&mut |file| {
+        if let Some(place) = resolved(&folder.join(&*file)).to_str() {
+            *file = place.to_owned();
+        }
+    });
 }
 
 /// Files as the scene names them, and where they are instead.

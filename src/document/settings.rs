@@ -6,7 +6,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::recovery::set_aside;
 use crate::film::write::durably;
-use crate::scene::toml_text::quoted;
+use crate::scene::toml_text::{bare_or_quoted, quoted};
 
 /// Remembered between runs. A file that cannot be read is set aside as `NAME.bad` and defaults are used.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +17,10 @@ pub struct Settings {
     pub theme: Theme,
     /// Size of all text and widgets, in per cent, 50 … 300.
     pub zoom_percent: u32,
+    /// Whether a start without a scene shows the welcome.
+    pub welcome: bool,
+    /// Keys of another version of the program and their values, as TOML: kept for it.
+    pub others: Vec<(String, String)>,
 }
 
 /// Colours of the window.
@@ -38,7 +42,13 @@ const THEMES: [(&str, Theme); 3] =
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { recent: Vec::new(), theme: Theme::default(), zoom_percent: 100 }
+        Settings {
+            recent: Vec::new(),
+            theme: Theme::default(),
+            zoom_percent: 100,
+            welcome: true,
+            others: Vec::new(),
+        }
     }
 }
 
@@ -65,7 +75,7 @@ impl Settings {
         (Settings::default(), Some(message))
     }
 
-    /// Unknown keys are those of another version and are passed over.
+    /// Unknown keys are those of another version and are kept.
     fn parse(text: &str) -> Result<Settings, String> {
         let root = DeTable::parse(text).map_err(|error| error.message().to_owned())?;
         let mut settings = Settings::default();
@@ -86,8 +96,9 @@ impl Settings {
                         settings.recent.push(PathBuf::from(file));
                     }
                 }
-                ("theme" | "zoom_percent" | "recent", _) => return Err(wrong()),
-                _ => {}
+                ("welcome", DeValue::Boolean(shows)) => settings.welcome = *shows,
+                ("theme" | "zoom_percent" | "recent" | "welcome", _) => return Err(wrong()),
+                (other, value) => settings.others.push((other.to_owned(), inline(value))),
             }
         }
         Ok(settings)
@@ -103,7 +114,10 @@ impl Settings {
         for path in self.recent.iter().filter_map(|path| path.to_str()) {
             text.push_str(&format!("    {},\n", quoted(path)));
         }
-        text.push_str("]\n");
+        text.push_str(&format!("]\nwelcome = {}\n", self.welcome));
+        for (key, value) in &self.others {
+            text.push_str(&format!("{} = {value}\n", bare_or_quoted(key)));
+        }
         if let Some(folder) = file.parent() {
             std::fs::create_dir_all(folder)
                 .map_err(|error| format!("cannot make {}: {error}", folder.display()))?;
@@ -117,6 +131,29 @@ impl Settings {
         self.recent.retain(|known| *known != path);
         self.recent.insert(0, path);
         self.recent.truncate(MOST_RECENT);
+    }
+}
+
+/// A value on one line.
+fn inline(value: &DeValue<'_>) -> String {
+    match value {
+        DeValue::String(text) => quoted(text),
+        DeValue::Integer(number) => number.to_string(),
+        DeValue::Float(number) => number.to_string(),
+        DeValue::Boolean(flag) => flag.to_string(),
+        DeValue::Datetime(time) => time.to_string(),
+        DeValue::Array(list) => {
+            let items: Vec<String> = list.iter().map(|item| inline(item.get_ref())).collect();
+            format!("[{}]", items.join(", "))
+        }
+        DeValue::Table(table) => {
+            let item = |(key, value): (&toml::Spanned<_>, &toml::Spanned<DeValue<'_>>)| {
+                let key: &std::borrow::Cow<'_, str> = key.get_ref();
+                format!("{} = {}", bare_or_quoted(key), inline(value.get_ref()))
+            };
+            let items: Vec<String> = table.iter().map(item).collect();
+            format!("{{ {} }}", items.join(", "))
+        }
     }
 }
 
@@ -138,6 +175,23 @@ mod tests {
         assert_eq!(settings.recent.len(), 10);
         assert!(settings.recent[0].ends_with("a \"5\" ü.toml"));
         assert!(settings.recent[1].ends_with("a \"11\" ü.toml"));
+        settings.write(&file).unwrap();
+        assert_eq!(Settings::read(&file), (settings, None));
+    }
+
+    #[test]
+    fn keys_of_another_version_are_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("settings.toml");
+        let later = "later = true\n\"odd key\" = [1, 0xff, 2.5, \"a\\\"b\"]\nday = 2026-01-02\n\
+                     welcome = false\n[panels]\nleft = { width = 180 }\n[[tools]]\nname = \"x\"\n";
+        std::fs::write(&file, later).unwrap();
+        let (settings, wrong) = Settings::read(&file);
+        assert!(wrong.is_none() && !settings.welcome);
+        let keys: Vec<&str> = settings.others.iter().map(|(key, _)| key.as_str()).collect();
+        assert_eq!(keys, ["later", "odd key", "day", "panels", "tools"]);
+        assert_eq!(settings.others[1].1, r#"[1, 0xff, 2.5, "a\"b"]"#);
+        assert_eq!(settings.others[3].1, "{ left = { width = 180 } }");
         settings.write(&file).unwrap();
         assert_eq!(Settings::read(&file), (settings, None));
     }

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use exr::meta::MetaData;
 
+use super::hdr;
 use super::write::{Format, SCENE_KEY};
 
 /// The text of the scene in a picture that this program wrote. The error says what is wrong, and a way
@@ -14,6 +15,7 @@ pub fn scene_text(path: &Path) -> Result<String, String> {
     let shown = path.display();
     let read = match Format::of(path, false) {
         Ok(Format::Exr) => of_exr(path),
+        Ok(Format::Hdr) => hdr::scene(path),
         Ok(_) => of_png(path),
         Err(error) => Err(error.cause),
     };

@@ -2,6 +2,7 @@
 
 pub mod develop;
 pub mod embedded;
+mod hdr;
 pub mod layout;
 pub mod pixels;
 pub mod plates;

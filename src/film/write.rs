@@ -1,10 +1,11 @@
-//! Picture files: PNG with 8 or 16 bits as shown, OpenEXR with linear floats; written whole or not at all.
+//! Picture files: PNG with 8 or 16 bits as shown, OpenEXR and Radiance with linear light; written whole or not at all.
 
 use std::fmt;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::develop::{self, code16};
+use super::hdr::hdr;
 use super::plates::Plates;
 use super::{Film, Frame};
 use crate::color::{Rgb, srgb_byte};
@@ -19,9 +20,16 @@ pub enum Format {
     Png16,
     /// OpenEXR, 32-bit linear floats, before exposure.
     Exr,
+    /// Radiance, linear light before exposure, 8 bits per channel and an exponent per pixel.
+    Hdr,
 }
 
 impl Format {
+    /// Whether a file of it says how much of a pixel is covered.
+    pub fn holds_alpha(self) -> bool {
+        self != Format::Hdr
+    }
+
     /// The format that a file's name asks for; `deep` chooses 16 bits for PNG.
     pub fn of(path: &Path, deep: bool) -> Result<Format, WriteError> {
         let ending = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
@@ -29,9 +37,10 @@ impl Format {
             Some("png") if deep => Ok(Format::Png16),
             Some("png") => Ok(Format::Png8),
             Some("exr") => Ok(Format::Exr),
+            Some("hdr") => Ok(Format::Hdr),
             _ => Err(WriteError {
                 path: path.into(),
-                cause: "the name must end in .png or .exr".into(),
+                cause: "the name must end in .png, .exr or .hdr".into(),
             }),
         }
     }
@@ -69,6 +78,7 @@ pub fn picture(
         (Format::Png8, Some(_)) => png8_alpha(out, plates, exposure, scene),
         (Format::Png16, _) => png16(out, plates, exposure, scene),
         (Format::Exr, _) => exr_floats(out, plates, scene),
+        (Format::Hdr, _) => hdr(out, film, scene),
     })
 }
 
@@ -210,7 +220,7 @@ fn png16(
 }
 
 /// The pixels of a picture, row by row.
-fn pixels([width, height]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
+pub(super) fn pixels([width, height]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
     (0..height).flat_map(move |y| (0..width).map(move |x| [x, y]))
 }
 

@@ -53,6 +53,22 @@ impl Known {
             images: scene.images().map(image).collect(),
         }
     }
+
+    /// Puts the files into a scene, in place of what it holds of the same names.
+    pub fn put(&self, scene: &mut Scene) {
+        for solid in &mut scene.solids {
+            if let Shape::Mesh { file, mesh } = &mut solid.shape
+                && let Some(known) = self.meshes.get(file)
+            {
+                *mesh = Arc::clone(known);
+            }
+        }
+        for image in scene.images_mut() {
+            if let Some(known) = self.images.get(&image.file) {
+                image.image = Arc::clone(known);
+            }
+        }
+    }
 }
 
 /// Reads what a scene file held; `path` is named in errors, and mesh and image files that are not

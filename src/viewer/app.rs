@@ -9,16 +9,17 @@ use super::Setup;
 use super::chart::ChartPanel;
 use super::command::Command;
 use super::compare::Compare;
+use super::examples::Copied;
 use super::files::Files;
 use super::handles::{Handles, Stage};
 use super::inspector::{Known, Outcome, Selection, inspector_ui, paths};
-use super::keep::kept_text;
 use super::looks::Strip;
 use super::mass::MassPanel;
 use super::menu::{MenuState, menu_ui};
 use super::mixer::Mixer;
 use super::navigate::focused;
 use super::notice::Notices;
+use super::on_disk::Changes;
 use super::outline::{Lists, outline_ui};
 use super::picture::PictureView;
 use super::pixel::PixelPanel;
@@ -26,6 +27,8 @@ use super::rename::Renaming;
 use super::screen::{Screen, wake};
 use super::status::status_ui;
 use super::style;
+use super::thumbs::Noted;
+use super::welcome::Welcome;
 use crate::document::recovery::Recovery;
 use crate::document::settings::Settings;
 use crate::document::{Document, flaw};
@@ -46,6 +49,12 @@ pub struct App {
     pub(super) settings: Settings,
     pub(super) notices: Notices,
     pub(super) files: Files,
+    /// What is on disk and not here.
+    pub(super) changes: Changes,
+    /// The example that the document is a copy of, if it is one.
+    pub(super) copied: Option<Copied>,
+    pub(super) noted_thumb: Option<Noted>,
+    pub(super) welcome: Welcome,
     /// Where unsaved work is kept; `None` if there is no such place, which was said.
     pub(super) recovery: Option<Recovery>,
     /// Index of the solid that was clicked or selected last.
@@ -115,6 +124,10 @@ impl App {
             settings,
             notices,
             files: Files::new(setup.folders, setup.dialogs),
+            changes: Changes::default(),
+            copied: None,
+            noted_thumb: None,
+            welcome: Welcome::default(),
             recovery,
             picked: None,
             renaming: None,
@@ -137,7 +150,7 @@ impl App {
         };
         match setup.scene {
             Some(path) => app.open_in_background(ctx, path),
-            None => app.show_scene(),
+            None => app.begin(ctx),
         }
         app.files.offer_recovery(found);
         app
@@ -152,11 +165,13 @@ impl App {
         let mut edited = self.document.scene().clone();
         let mut changed = false;
         self.bars(ui, &mut commands);
+        self.on_disk_ui(ui);
         let step = self.mixer_ui(ui, &mut edited, &mut changed);
         let step = step.or(self.chart_ui(ui, &mut edited, &mut changed));
         self.mass_ui(ui);
         self.pixel_ui(ui);
         let strip = self.strip_ui(ui);
+        self.welcome_ui(ui, &mut commands);
         let outcome = self.panels(ui, &mut edited, &mut commands);
         let pick = outcome.pick.clone();
         changed |= self.apply_outcome(outcome, &mut edited);
@@ -179,6 +194,8 @@ impl App {
         self.watch_costs();
         self.ask_pixels();
         self.watch_glances();
+        self.keep_example();
+        self.note_thumb();
         self.autosave(&ctx);
         self.set_title(&ctx);
     }
@@ -208,8 +225,8 @@ impl App {
         for event in self.live.take_events() {
             match event {
                 Event::Exported(path) => self.notices.say(format!("wrote {}", path.display())),
-                Event::Kept { path, bytes } => self.notices.say(kept_text(&path, bytes)),
-                Event::Failed(message) => self.notices.error(message),
+                Event::Kept { path, bytes } => self.kept(&path, bytes),
+                Event::Failed(message) => self.failed(message),
             }
         }
     }
@@ -254,7 +271,9 @@ impl App {
         // Escape closes an open menu first.
         let open = Popup::is_any_open(ctx) || self.renaming.is_some();
         let own = |c: &Command| typing && matches!(c, Command::Undo | Command::Redo);
-        let taken = |c: &Command| ((focused || open) && plain(c)) || own(c);
+        // Escape closes the welcome, too, before it stops anything.
+        let closes = |c: &Command| *c == Command::Stop && self.welcome.is_open();
+        let taken = |c: &Command| ((focused || open) && plain(c)) || own(c) || closes(c);
         let usable = Command::WITH_SHORTCUTS.into_iter().filter(|c| !taken(c));
         usable
             .filter(|command| {
@@ -494,7 +513,11 @@ impl App {
             Command::Stop => self.live.cancel(),
             Command::Resume => self.live.resume(),
             Command::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
+            Command::Welcome => self.open_welcome(ctx),
+            Command::Diagnostics => self.copy_diagnostics(ctx),
+            Command::LogFolder => self.show_log_folder(),
             Command::New(_)
+            | Command::Example(_)
             | Command::Open
             | Command::Import
             | Command::OpenRecent(_)

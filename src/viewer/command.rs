@@ -9,6 +9,8 @@ pub(super) enum Command {
     New(usize),
     /// Asks for a scene file and opens it.
     Open,
+    /// Opens a copy of the example with this index.
+    Example(usize),
     /// Opens the recent file with this index.
     OpenRecent(usize),
     /// Asks for another program's file and makes a scene of it.
@@ -69,6 +71,12 @@ pub(super) enum Command {
     Pixel,
     /// Whether the picture shows how many samples its pixels have.
     SampleMap,
+    /// Shows ways to begin, recent files and examples.
+    Welcome,
+    /// Copies what a report of a fault needs.
+    Diagnostics,
+    /// Shows where the log is.
+    LogFolder,
     /// Stops the running trace, export or keeping.
     Stop,
     /// Traces what a stop left out.
@@ -83,6 +91,7 @@ impl Command {
         match self {
             Command::New(_) => "New",
             Command::Open => "Open…",
+            Command::Example(_) => "Open example",
             Command::OpenRecent(_) => "Open recent",
             Command::Import => "Import…",
             Command::Save => "Save",
@@ -113,6 +122,9 @@ impl Command {
             Command::Mass => "Mass properties",
             Command::Pixel => "Pixel and its rays",
             Command::SampleMap => "Sample map",
+            Command::Welcome => "Welcome",
+            Command::Diagnostics => "Copy diagnostics",
+            Command::LogFolder => "Show log folder",
             Command::Stop => "Stop",
             Command::Resume => "Trace now",
         }
@@ -123,11 +135,14 @@ impl Command {
         match self {
             Command::New(_) => "Starts a scene from this template",
             Command::Open => "Opens a scene file",
+            Command::Example(_) => "Opens a copy of this example",
             Command::OpenRecent(_) => "Opens this file again",
             Command::Import => "Makes a scene of an OBJ, glTF, GLB or NFF file and opens it",
             Command::Save => "Writes the changed values into the scene file; its comments stay",
             Command::SaveAs => "Saves to another file; paths of meshes are adapted",
-            Command::Export => "Writes the picture as PNG or OpenEXR, at its own size or another",
+            Command::Export => {
+                "Writes the picture as PNG, OpenEXR or Radiance HDR, at its own size or another"
+            }
             Command::Keep => {
                 "Writes what was traced beside the scene file, so that the next opening casts no ray"
             }
@@ -169,6 +184,11 @@ impl Command {
             Command::SampleMap => {
                 "Where adaptive sampling (trace.adaptive) spends its rays: white pixels have all samples"
             }
+            Command::Welcome => "New scenes, recent files and examples, below the picture",
+            Command::Diagnostics => {
+                "Copies version, system, graphics card, settings and the end of the log, for a report"
+            }
+            Command::LogFolder => "Opens the folder in which the log file is",
             Command::Stop => "Stops what runs; the last whole picture stays",
             Command::Resume => "Traces the picture that was stopped",
         }
@@ -202,7 +222,11 @@ impl Command {
             Command::Snapshot => keys(Modifiers::NONE, Key::S),
             Command::Compare => keys(Modifiers::NONE, Key::W),
             Command::New(_)
+            | Command::Example(_)
             | Command::OpenRecent(_)
+            | Command::Welcome
+            | Command::Diagnostics
+            | Command::LogFolder
             | Command::Import
             | Command::Keep
             | Command::AddLight

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::pin::Pin;
+use std::process::{Command, Stdio};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 
@@ -50,9 +51,9 @@ impl Purpose {
     /// What the files are called and how their names end.
     pub fn filter(self) -> (&'static str, &'static [&'static str]) {
         match self {
-            Purpose::Open => ("Scenes, and pictures with theirs", &["toml", "png", "exr"]),
+            Purpose::Open => ("Scenes, and pictures with theirs", &["toml", "png", "exr", "hdr"]),
             Purpose::Save => ("Rayforest scenes", &["toml"]),
-            Purpose::Export => ("Pictures", &["png", "exr"]),
+            Purpose::Export => ("Pictures", &["png", "exr", "hdr"]),
             Purpose::LocateMesh => ("Meshes", &["obj"]),
             Purpose::LocateImage | Purpose::Image => ("Images", &["png", "jpg", "jpeg", "hdr"]),
             Purpose::Import => ("OBJ, glTF and NFF", &ENDINGS),
@@ -92,6 +93,9 @@ pub trait Dialogs {
     /// What came of it so far. `focused` says whether the window has the keyboard: a dialog that
     /// shows takes it away.
     fn answer(&mut self, focused: bool) -> Answer;
+
+    /// Shows a folder to the person; whether there was somebody to ask.
+    fn show_folder(&mut self, folder: &Path) -> bool;
 }
 
 /// An answer faster than this is nobody's: there is no service.
@@ -153,6 +157,17 @@ impl Dialogs for SystemDialogs {
         self.asked = None;
         answer
     }
+
+    fn show_folder(&mut self, folder: &Path) -> bool {
+        let opener = match std::env::consts::OS {
+            "windows" => "explorer",
+            "macos" => "open",
+            _ => "xdg-open",
+        };
+        let started = Command::new(opener).arg(folder).stdin(Stdio::null()).spawn();
+        // Waited for, so that the system may forget it.
+        started.map(|mut child| std::thread::spawn(move || child.wait())).is_ok()
+    }
 }
 
 fn dialog(question: &Question) -> rfd::AsyncFileDialog {
@@ -176,6 +191,10 @@ impl Dialogs for ScriptedDialogs {
 
     fn answer(&mut self, _: bool) -> Answer {
         self.answers.pop().unwrap_or(Answer::Cancelled)
+    }
+
+    fn show_folder(&mut self, _: &Path) -> bool {
+        false
     }
 }
 

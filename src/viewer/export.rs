@@ -45,7 +45,7 @@ impl ExportForm {
     /// What else the file shall hold, in the format that its name asks for.
     pub(super) fn extras(&self, format: Format) -> Extras {
         Extras {
-            alpha: self.alpha,
+            alpha: self.alpha && format.holds_alpha(),
             layers: self.layers && format == Format::Exr,
             region: self.cut.then_some(self.region),
         }
@@ -56,6 +56,7 @@ impl ExportForm {
         match self.format {
             Format::Png8 | Format::Png16 => "png",
             Format::Exr => "exr",
+            Format::Hdr => "hdr",
         }
     }
 
@@ -72,6 +73,11 @@ impl ExportForm {
                 (Format::Png8, "PNG, 8 bits", "As shown, sRGB: for screens and the web"),
                 (Format::Png16, "PNG, 16 bits", "As shown, sRGB, in fine steps"),
                 (Format::Exr, "OpenEXR", "Linear light before exposure, 32-bit floats"),
+                (
+                    Format::Hdr,
+                    "Radiance HDR",
+                    "Linear light before exposure, small, exact to 1/128",
+                ),
             ] {
                 ui.radio_value(&mut self.format, format, name).on_hover_text(about);
             }
@@ -114,7 +120,9 @@ impl ExportForm {
         ui.horizontal(|ui| {
             let about = "Leaves out the background that the eye sees, and writes how much of each \
                          pixel is covered";
-            ui.checkbox(&mut self.alpha, "Transparent background").on_hover_text(about);
+            let alpha = Checkbox::new(&mut self.alpha, "Transparent background");
+            let response = ui.add_enabled(self.format.holds_alpha(), alpha);
+            response.on_hover_text(about).on_disabled_hover_text("Radiance holds no coverage");
             let layers = Checkbox::new(&mut self.layers, "Layers");
             let about = "A layer per light, per material and per bounce, in one OpenEXR file";
             let response = ui.add_enabled(self.format == Format::Exr, layers);

@@ -13,9 +13,12 @@ use super::dialog::{Answer, Dialogs, Purpose, Question, with_ending};
 use super::export::ExportForm;
 use super::import::ImportDone;
 use super::inspector::Selection;
+use super::on_disk::{self, Changes};
 use super::paints::ImageFor;
 use super::path_field::PathField;
+use crate::document::examples::EXAMPLES;
 use crate::document::recovery::Found;
+use crate::document::watch::{OnDisk, Watched};
 use crate::document::{Document, DocumentError, Missing, Save, TEMPLATES};
 use crate::scene::Scene;
 use crate::scene::texture::{Image, ImageError};
@@ -31,6 +34,8 @@ pub(super) enum Next {
     New(usize),
     /// Asks for a file and opens it.
     Ask,
+    /// Opens a copy of an example.
+    Example(usize),
     /// Opens a file.
     Open(PathBuf),
     /// Asks for another program's file and imports it.
@@ -63,6 +68,8 @@ pub(super) enum For {
 pub(super) enum Source {
     /// A scene file.
     File(PathBuf),
+    /// An example, and the cache folder.
+    Example(usize, PathBuf),
     /// Work of a run that ended without saving it.
     Found(Found),
 }
@@ -74,6 +81,7 @@ impl Source {
     fn open(&self, located: &Located) -> Result<Document, DocumentError> {
         match self {
             Source::File(path) => Document::open_relocated(path, located),
+            Source::Example(number, cache) => EXAMPLES[*number].open(cache),
             Source::Found(found) => found.open_relocated(located),
         }
     }
@@ -118,12 +126,14 @@ pub(super) enum Done {
         result: Box<Result<Image, ImageError>>,
     },
     Imported(ImportDone),
+    /// Another program changed a file.
+    OnDisk(OnDisk),
 }
 
 /// Files, dialogs and threads of the window.
 pub(super) struct Files {
-    folders: Folders,
-    dialogs: Box<dyn Dialogs>,
+    pub(super) folders: Folders,
+    pub(super) dialogs: Box<dyn Dialogs>,
     /// What the dialog that shows is for.
     asking: Option<(Question, For)>,
     pub(super) modal: Option<Modal>,
@@ -137,6 +147,8 @@ pub(super) struct Files {
     touched: Option<Instant>,
     /// The window may close without a question.
     leaving: bool,
+    /// The thread that looks at files, once there are some.
+    watcher: Option<Sender<Watched>>,
 }
 
 impl Files {
@@ -153,6 +165,7 @@ impl Files {
             receive,
             touched: None,
             leaving: false,
+            watcher: None,
         }
     }
 
@@ -222,6 +235,7 @@ impl App {
     pub(super) fn run_file_command(&mut self, ctx: &Context, command: Command) {
         match command {
             Command::New(template) => self.after_unsaved(ctx, Next::New(template)),
+            Command::Example(number) => self.after_unsaved(ctx, Next::Example(number)),
             Command::Open => self.after_unsaved(ctx, Next::Ask),
             Command::OpenRecent(i) => {
                 if let Some(path) = self.settings.recent.get(i).cloned() {
@@ -261,6 +275,10 @@ impl App {
                 }
             }
             Next::Ask => self.ask(ctx, Purpose::Open, String::new(), For::Open),
+            Next::Example(number) => {
+                let cache = self.files.folders.cache.clone();
+                self.open_source(ctx, Source::Example(number, cache), Vec::new());
+            }
             Next::Open(path) => self.open_in_background(ctx, path),
             Next::Import => self.ask_import(ctx),
             Next::Quit => {
@@ -271,7 +289,16 @@ impl App {
     }
 
     fn replace_document(&mut self, document: Document) {
+        self.put_document(document);
+        self.show_opened();
+    }
+
+    /// Takes another document, which is still to be shown.
+    pub(super) fn put_document(&mut self, document: Document) {
         self.document = document;
+        self.changes = Changes::default();
+        self.copied = None;
+        self.welcome.close();
         self.selection = Selection::Scene;
         (self.picked, self.renaming) = (None, None);
         self.mixer.forget();
@@ -280,7 +307,6 @@ impl App {
         self.chart.forget();
         self.mass.forget();
         self.pixel.forget();
-        self.show_opened();
     }
 
     /// Saves to the document's file, or asks for one.
@@ -298,6 +324,11 @@ impl App {
 
     fn save_to(&mut self, ctx: &Context, path: &Path, next: Option<Next>) {
         self.document.end_gesture();
+        if self.copied.is_some()
+            && let Err(error) = self.document.take_along(&self.files.folders.cache, path)
+        {
+            return self.notices.error(error.message);
+        }
         match self.document.save(path) {
             Ok(save) => self.write(ctx, save, next),
             Err(error) => self.notices.error(error.message),
@@ -406,6 +437,8 @@ impl App {
                 self.notices.say(format!("saved {}{lost}", save.path.display()));
                 self.remember_file(&save.path.clone());
                 self.document.saved(save);
+                // What was on disk is replaced, or the document is another file's.
+                self.changes.forget_scene();
                 // Another folder may have changed the paths of meshes, and nothing is unsaved now.
                 self.show_scene();
                 if let Some(next) = next {
@@ -419,6 +452,7 @@ impl App {
             Done::Saved { result: Err(error), .. } => self.notices.error(error.message),
             Done::Image { path, place, result } => self.image_read(&path, &place, *result),
             Done::Imported(done) => self.imported(done),
+            Done::OnDisk(change) => self.changed_on_disk(change),
             Done::Kept(Ok(())) => self.files.discard_recovered(),
             Done::Kept(Err(error)) => {
                 self.notices.error(format!("unsaved work is not kept: {}", error.message));
@@ -438,14 +472,17 @@ impl App {
         }
     }
 
-    /// Keeps unsaved work after a moment's rest, and forgets it once it is saved.
+    /// After a moment's rest: watches the document's files, keeps unsaved work, and forgets it once it is
+    /// saved.
     pub(super) fn autosave(&mut self, ctx: &Context) {
-        let (Some(touched), Some(recovery)) = (self.files.touched, &self.recovery) else { return };
+        let Some(touched) = self.files.touched else { return };
         if let Some(rest) = REST.checked_sub(touched.elapsed()) {
             ctx.request_repaint_after(rest);
             return;
         }
         self.files.touched = None;
+        self.watch_files();
+        let Some(recovery) = &self.recovery else { return };
         if self.document.is_unsaved() {
             let snapshot = recovery.snapshot(&self.document);
             self.files.work(ctx, move || Done::Kept(snapshot.write()));
@@ -453,6 +490,15 @@ impl App {
             recovery.clear();
             self.files.discard_recovered();
         }
+    }
+
+    /// Tells the thread that looks at files which ones they are.
+    fn watch_files(&mut self) {
+        let Files { watcher, send, .. } = &mut self.files;
+        let orders =
+            watcher.get_or_insert_with(|| on_disk::watcher(send.clone(), self.waker.clone()));
+        // A thread that failed is not missed: saving looks at the file itself.
+        let _ = orders.send(self.document.watched());
     }
 
     /// The window closes: nothing unsaved is left that the person did not give up.
@@ -468,11 +514,15 @@ impl App {
         let edited = self.document.is_unsaved() && self.document.scene() != before;
         match source {
             Source::File(path) if edited => self.files.show(Modal::Unsaved(Next::Open(path))),
+            Source::Example(number, _) if edited => {
+                self.files.show(Modal::Unsaved(Next::Example(number)));
+            }
             Source::Found(found) if edited => self.files.show(Modal::Recover(vec![found])),
             Source::File(path) => {
                 self.replace_document(document);
                 self.remember_file(&path);
             }
+            Source::Example(number, _) => self.show_example(number, document),
             Source::Found(found) => {
                 self.replace_document(document);
                 self.files.recovered = Some(found);

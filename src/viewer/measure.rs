@@ -124,7 +124,7 @@ fn turns(file: &Path, options: Options, folder: &Path) -> Turns {
     let ctx = Context::default();
     let setup = Setup {
         options,
-        folders: Folders { settings: folder.into(), recovery: folder.join("unsaved") },
+        folders: Folders::within(folder),
         dialogs: Box::new(ScriptedDialogs::default()),
         scene: Some(file.to_owned()),
     };

@@ -3,6 +3,7 @@
 use eframe::egui::{Align, Button, Label, Layout, MenuBar, Ui};
 
 use super::command::Command;
+use super::help::help_menu;
 use super::inspector::Selection;
 use super::keep::KeepOffer;
 use super::lists::{Subject, offer_ui};
@@ -58,6 +59,9 @@ pub(super) fn menu_ui(
         ui.menu_button("View", |ui| view_menu(ui, state, settings, &mut chosen))
             .response
             .on_hover_text("Size of the picture, lights, colours of the window");
+        ui.menu_button("Help", |ui| help_menu(ui, &mut chosen))
+            .response
+            .on_hover_text("Examples, and what a report of a fault needs");
         ui.separator();
         for (command, name) in [(Command::Undo, "Undo"), (Command::Redo, "Redo")] {
             let step = step(state.document, command);
@@ -241,7 +245,7 @@ fn view_menu(
     }
 }
 
-fn item(ui: &mut Ui, command: Command, chosen: &mut Option<Command>) {
+pub(super) fn item(ui: &mut Ui, command: Command, chosen: &mut Option<Command>) {
     labelled_item(ui, command, command.name(), chosen);
 }
 

@@ -8,13 +8,17 @@ mod chart_plot;
 mod command;
 mod compare;
 mod control;
+mod diagnostics;
 pub mod dialog;
+mod examples;
 mod export;
 mod files;
 mod handles;
+mod help;
 pub(crate) mod hints;
 mod import;
 mod inspector;
+mod journal;
 mod keep;
 mod kind;
 mod lists;
@@ -26,6 +30,7 @@ mod mixer;
 mod modal;
 mod navigate;
 mod notice;
+mod on_disk;
 mod operands;
 mod outline;
 mod paints;
@@ -41,12 +46,14 @@ mod screen;
 mod start;
 mod status;
 mod style;
+mod thumbs;
+mod welcome;
 
 pub use app::App;
 pub use screen::Graphics;
 pub use start::{Opening, WindowError, run};
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::session::Options;
 use dialog::Dialogs;
@@ -58,20 +65,34 @@ pub struct Folders {
     pub settings: PathBuf,
     /// Unsaved work.
     pub recovery: PathBuf,
+    /// The log.
+    pub log: PathBuf,
+    /// What can be made again: what was traced of examples, thumbnails.
+    pub cache: PathBuf,
 }
 
 impl Folders {
     /// Where this platform wants them; beside the present folder if it does not say.
     pub fn of_platform() -> Folders {
         match directories::ProjectDirs::from("", "", "rayforest") {
-            Some(dirs) => Folders {
-                settings: dirs.config_dir().to_owned(),
-                recovery: dirs.state_dir().unwrap_or(dirs.data_local_dir()).join("unsaved"),
-            },
-            None => {
-                Folders { settings: ".rayforest".into(), recovery: ".rayforest/unsaved".into() }
+            Some(dirs) => {
+                let state = dirs.state_dir().unwrap_or(dirs.data_local_dir());
+                Folders {
+                    settings: dirs.config_dir().to_owned(),
+                    recovery: state.join("unsaved"),
+                    log: state.to_owned(),
+                    cache: dirs.cache_dir().to_owned(),
+                }
             }
+            None => Folders::within(Path::new(".rayforest")),
         }
+    }
+
+    /// All of them in one folder.
+    pub fn within(folder: &Path) -> Folders {
+        let [settings, recovery, log, cache] =
+            ["config", "unsaved", "log", "cache"].map(|name| folder.join(name));
+        Folders { settings, recovery, log, cache }
     }
 
     fn settings_file(&self) -> PathBuf {

@@ -24,12 +24,14 @@ struct Notice {
 impl Notices {
     /// Something was done.
     pub(super) fn say(&mut self, text: String) {
+        log::info!("{text}");
         self.add(Notice { text, until: Some(Instant::now() + STAY) });
     }
 
     /// Something went wrong: stays until it is closed.
     pub(super) fn error(&mut self, text: String) {
         if !self.list.iter().any(|n| n.text == text) {
+            log::warn!("{text}");
             self.add(Notice { text, until: None });
         }
     }

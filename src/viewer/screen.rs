@@ -59,6 +59,11 @@ impl Screen {
         &self.known[at].textures
     }
 
+    /// What it says of itself.
+    pub(super) fn adapter(&self) -> wgpu::AdapterInfo {
+        self.state.adapter.get_info()
+    }
+
     fn forget_dropped(&mut self) {
         let (kept, dropped): (Vec<Known>, Vec<Known>) =
             self.known.drain(..).partition(|known| known.picture.strong_count() > 0);
@@ -91,7 +96,9 @@ impl App {
     pub fn draw_on(&mut self, ctx: &Context, state: &RenderState, graphics: Graphics) {
         let waker = ctx.clone();
         let watch = Watch::new(&state.device, move || waker.request_repaint());
-        let software = state.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+        let info = state.adapter.get_info();
+        log::info!("the window is drawn by {} through {:?}", info.name, info.backend);
+        let software = info.device_type == wgpu::DeviceType::Cpu;
         let wanted = match graphics {
             Graphics::Gpu => true,
             Graphics::Auto => !software,

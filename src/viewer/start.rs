@@ -8,13 +8,17 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Duration;
 
-use eframe::egui::{Ui, ViewportBuilder, ViewportCommand};
+use eframe::egui::{IconData, Ui, ViewportBuilder, ViewportCommand};
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use eframe::{NativeOptions, Renderer, wgpu};
 
 use super::dialog::SystemDialogs;
+use super::journal;
 use super::{App, Folders, Graphics, Setup};
 use crate::session::Options;
+
+/// As a PNG.
+const ICON: &[u8] = include_bytes!("../../assets/icon.png");
 
 /// Why there is no window.
 #[derive(Debug)]
@@ -56,7 +60,19 @@ type Kept = Rc<RefCell<Option<App>>>;
 /// Opens the window and returns when it is closed. Where wgpu does not draw, OpenGL does; where the
 /// graphics card is lost, the window opens again without asking it for the picture, and, if that is
 /// lost too, by OpenGL.
-pub fn run(mut opening: Opening) -> Result<(), WindowError> {
+pub fn run(opening: Opening) -> Result<(), WindowError> {
+    let version = env!("CARGO_PKG_VERSION");
+    journal::start(&Folders::of_platform().log);
+    log::info!("Rayforest {version} begins");
+    let ended = keep_open(opening);
+    match &ended {
+        Ok(()) => log::info!("Rayforest ends"),
+        Err(error) => log::error!("no window: {error}"),
+    }
+    ended
+}
+
+fn keep_open(mut opening: Opening) -> Result<(), WindowError> {
     let kept = Kept::default();
     let mut refused = String::new();
     loop {
@@ -99,11 +115,18 @@ fn no_display(message: &str) -> WindowError {
     WindowError::NoDisplay(line.trim_end_matches('.').to_owned())
 }
 
+/// The picture by which desktops show the program.
+fn icon() -> IconData {
+    // What is built in is a picture: a test reads it.
+    eframe::icon_data::from_png_bytes(ICON).unwrap_or_default()
+}
+
 fn open(opening: &Opening, kept: &Kept) -> eframe::Result {
     let Opening { scene, options, graphics, lose_at } = opening.clone();
     let viewport = ViewportBuilder::default()
         .with_title("Rayforest")
         .with_app_id("rayforest")
+        .with_icon(icon())
         .with_inner_size([1280.0, 720.0])
         .with_min_inner_size([800.0, 500.0]);
     let native = NativeOptions {
@@ -193,6 +216,13 @@ fn wgpu_options() -> WgpuConfiguration {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_icon_is_a_picture() {
+        let icon = icon();
+        assert_eq!([icon.width, icon.height], [256, 256]);
+        assert!(icon.rgba.chunks(4).any(|pixel| pixel[3] == 0), "its ground is clear");
+    }
 
     #[test]
     fn the_cause_is_told_without_its_place_in_a_source_file() {

@@ -168,7 +168,7 @@ fn places_that_cannot_be_written_are_named() {
         assert_says(&render(output, 1), &["cannot write", output]);
     }
     for output in ["a.jpg", "a", ".png", "a.png.txt"] {
-        assert_says(&render(output, 2), &[".png or .exr"]);
+        assert_says(&render(output, 2), &[".png, .exr or .hdr"]);
     }
     // Found before the trace: no picture without its statistics.
     let arguments = ["render", "scene.toml", "-o", "a.png", "--stats", "no/such/a.json"];

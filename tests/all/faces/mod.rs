@@ -54,6 +54,8 @@ const DISPLAYS: [&str; 3] = ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"];
 fn rayforest(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_rayforest"));
     command.current_dir(folder).args(arguments);
+    // Its log is nobody's.
+    command.env("XDG_STATE_HOME", env!("CARGO_TARGET_TMPDIR"));
     for display in DISPLAYS {
         command.env_remove(display);
     }

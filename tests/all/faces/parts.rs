@@ -67,6 +67,6 @@ fn parts_that_cannot_be_are_refused() {
     refused(&["merge", "a.part", "-o", "b.png"], &["a.part", "part 2/2 is missing"]);
     refused(&["merge", "a.part", "scene.toml", "-o", "b.png"], &["scene.toml", "no part"]);
     refused(&["merge", "a.part", "no.part", "-o", "b.png"], &["no.part"]);
-    refused(&["merge", "a.part", "-o", "b.gif"], &[".png or .exr"]);
+    refused(&["merge", "a.part", "-o", "b.gif"], &[".png, .exr or .hdr"]);
     refused(&["merge", "-o", "b.png"], &["PARTS"]);
 }

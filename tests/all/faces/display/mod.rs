@@ -147,7 +147,7 @@ impl Desk {
         }
         command.env("PATH", self.file("no-programs")).env("DISPLAY", &self.server.name);
         command.env("XDG_RUNTIME_DIR", self.file("run")).env("HOME", self.file("home"));
-        for name in ["CONFIG", "STATE", "DATA"] {
+        for name in ["CONFIG", "STATE", "DATA", "CACHE"] {
             command.env(format!("XDG_{name}_HOME"), self.file(&name.to_lowercase()));
         }
         command.envs(self.variables.iter().copied());

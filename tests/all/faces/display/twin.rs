@@ -32,7 +32,7 @@ impl Twin {
             let file = file.unwrap();
             std::fs::copy(file.path(), own.join(file.file_name())).unwrap();
         }
-        let folders = Folders { settings: folder.path().join("config"), recovery: own };
+        let folders = Folders::within(folder.path());
         let path = scene.to_owned();
         let harness = Harness::builder()
             .with_size(vec2(f32::from(SIZE[0]), f32::from(SIZE[1])))

@@ -20,7 +20,7 @@ fn on_card(scene: &str, graphics: Graphics) -> (Window, RenderState) {
     let harness = builder.renderer(renderer).build_eframe(|context| {
         let setup = Setup {
             options: Options { threads: 2, memory: 1 << 30 },
-            folders: Folders { settings: root.join("config"), recovery: root.join("unsaved") },
+            folders: Folders::within(&root),
             dialogs: Box::new(ScriptedDialogs { answers: Vec::new() }),
             scene: Some(opened),
         };

@@ -43,9 +43,11 @@ fn an_8_bit_export_holds_the_bytes_of_the_view() {
 
 #[test]
 fn finer_formats_hold_what_a_render_of_the_saved_scene_writes() {
-    for (name, option, arguments) in
-        [("deep.png", "PNG, 16 bits", &["--bits", "16"] as &[&str]), ("light.exr", "OpenEXR", &[])]
-    {
+    for (name, option, arguments) in [
+        ("deep.png", "PNG, 16 bits", &["--bits", "16"] as &[&str]),
+        ("light.exr", "OpenEXR", &[]),
+        ("light.hdr", "Radiance HDR", &[]),
+    ] {
         let (mut window, file) = edited(name);
         window.export(&[option]);
         window.save();

@@ -17,6 +17,7 @@ mod looks;
 mod mass;
 mod mixer;
 mod names;
+mod on_disk;
 mod operands;
 mod paths;
 mod picture;
@@ -80,10 +81,7 @@ impl Window {
             Harness::builder().with_size(size).with_max_steps(1000).build_eframe(|context| {
                 let setup = Setup {
                     options,
-                    folders: Folders {
-                        settings: root.join("config"),
-                        recovery: root.join("unsaved"),
-                    },
+                    folders: Folders::within(&root),
                     dialogs: Box::new(ScriptedDialogs { answers }),
                     scene,
                 };
