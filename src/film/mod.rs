@@ -1,11 +1,13 @@
 //! What the eye gets: a picture in linear floats, its development to 8 bits, and picture files.
 
+pub mod clipping;
 pub mod develop;
 pub mod embedded;
 pub mod layout;
 pub mod pixels;
 pub mod plates;
 pub mod sheet;
+pub mod tone;
 pub mod write;
 
 use crate::color::Rgb;
