@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::Spread;
 use crate::film::Frame;
-use crate::math::exposure_factor;
+use crate::film::develop::Development;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::session::{Options, Session};
@@ -25,12 +25,13 @@ const EDITS: usize = 101;
 pub fn measure(name: &str, scene: Scene, options: Options, gpu: &Gpu) -> Result<Value, String> {
     let mut session = Session::open(scene, options, &Progress::default());
     let session = session.as_mut().map_err(|e| e.to_string())?;
-    let gain = exposure_factor(session.scene().picture.exposure);
+    let development = Development::of(&session.scene().picture);
     let mut product = Product::new(gpu.clone());
     let (mut uploads, mut values, mut dispatches) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..UPLOADS {
         let terms = &session.terms().values;
-        let times = product.measure(session.transport(), terms, gain).map_err(|e| e.to_string())?;
+        let times =
+            product.measure(session.transport(), terms, development).map_err(|e| e.to_string())?;
         uploads.push(times.matrix);
         values.extend(times.values);
         dispatches.extend(times.dispatch);
@@ -38,12 +39,12 @@ pub fn measure(name: &str, scene: Scene, options: Options, gpu: &Gpu) -> Result<
     let mut calls = Vec::new();
     for _ in 0..EDITS {
         let begun = Instant::now();
-        let picture = product.frame(session.transport(), &session.terms().values, gain);
+        let picture = product.frame(session.transport(), &session.terms().values, development);
         calls.push(begun.elapsed().as_secs_f64() * 1e3);
         // The next edit comes when this one is done.
         picture.and_then(|_| gpu.wait()).map_err(|e| e.to_string())?;
     }
-    let picture = product.frame(session.transport(), &session.terms().values, gain);
+    let picture = product.frame(session.transport(), &session.terms().values, development);
     let frame = picture.and_then(|picture| picture.read(gpu)).map_err(|e| e.to_string())?;
     let (differing, most) = differences(session.frame(), &frame);
     let processor = super::repeat(|| session.redraw());

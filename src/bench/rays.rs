@@ -264,8 +264,10 @@ mod tests {
     #[test]
     fn every_pixel_has_one_ray_and_every_kind_a_number() {
         let scene = crate::document::Document::built_in().scene().clone();
-        let scene =
-            Scene { picture: crate::scene::Picture { size: [21, 13], exposure: 0.0 }, ..scene };
+        let scene = Scene {
+            picture: crate::scene::Picture { size: [21, 13], ..Default::default() },
+            ..scene
+        };
         assert_eq!(primary(&scene).len(), 21 * 13);
         let row = measure("small", &scene);
         for kind in ["primary", "mirror", "mirror_shuffled", "shadow"] {

@@ -6,6 +6,7 @@ use super::render::edit_line;
 use super::watch::watched;
 use super::{Failure, print, read_scene, say};
 use crate::document::BUILT_IN;
+use crate::film::develop::Development;
 use crate::film::plates::Plates;
 use crate::film::write::{Format, check_writable, picture};
 use crate::scene::path::set;
@@ -48,8 +49,8 @@ pub(crate) fn run(file: Option<&Path>, why: &str) -> Result<(), Failure> {
 fn save(session: &Session, file: PathBuf) -> Result<(), Failure> {
     let scene = session.scene();
     let text = write::text(scene);
-    let exposure = scene.picture.exposure;
-    picture(&file, Format::Png8, &Plates::of(session.film()), exposure, &text)
+    let development = Development::of(&scene.picture);
+    picture(&file, Format::Png8, &Plates::of(session.film()), development, &text)
         .map_err(Failure::job)?;
     print(&format!("wrote {}", file.display()));
     Ok(())

@@ -6,10 +6,9 @@ use clap::Args;
 
 use super::{Common, Failure, print, read_scene};
 use crate::color::Rgb;
-use crate::film::develop::code8;
+use crate::film::develop::{Development, code8};
 use crate::forest::tree::Branch;
 use crate::geometry::Geometry;
-use crate::math::exposure_factor;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::session::inspect::{Base, InspectedLight, InspectedNode, Inspection, pixel};
@@ -57,7 +56,7 @@ impl Inspect {
 }
 
 fn print_terms(scene: &Scene, inspection: &Inspection) {
-    let [r, g, b] = code8(inspection.light, exposure_factor(scene.picture.exposure));
+    let [r, g, b] = code8(inspection.light, Development::of(&scene.picture));
     let samples = inspection.samples.len();
     print(&format!("shown: sRGB {r} {g} {b}, #{r:02X}{g:02X}{b:02X}; {samples} samples"));
     print("terms: coefficient, light added (red green blue), share of the pixel, product");

@@ -9,6 +9,7 @@ use super::cached::{self, OpenedScene};
 use super::tiles::{self, check_part_name};
 use super::watch::watched;
 use super::{Common, Failure, print, read_scene, say, set, sheet, write_text};
+use crate::film::develop::Development;
 use crate::film::plates::Region;
 use crate::film::write::{self as files, Format, check_writable, picture};
 use crate::forest::grow::RayCounts;
@@ -108,9 +109,9 @@ impl Render {
         stats["edits"] = Value::Array(reports);
         if let Some((file, format)) = self.output.as_deref().zip(format) {
             let text = write::text(session.scene());
-            let exposure = session.scene().picture.exposure;
+            let development = Development::of(&session.scene().picture);
             let plates = session.plates(self.extras()).map_err(Failure::input)?;
-            picture(file, format, &plates, exposure, &text).map_err(Failure::job)?;
+            picture(file, format, &plates, development, &text).map_err(Failure::job)?;
         }
         self.write_sample_map(&session)?;
         if let Some(file) = &self.looks {

@@ -42,10 +42,10 @@ impl Merge {
         let format = Format::of(&self.output, self.bits == "16").map_err(Failure::input)?;
         check_writable(&self.output).map_err(Failure::job)?;
         let merged = part::merge(&self.parts).map_err(Failure::input)?;
-        let part::Merged { film, scene, exposure } = merged;
+        let part::Merged { film, scene, development } = merged;
         let [width, height] = film.layout.size;
         let plates = Plates::of(film);
-        picture(&self.output, format, &plates, exposure, &scene).map_err(Failure::job)?;
+        picture(&self.output, format, &plates, development, &scene).map_err(Failure::job)?;
         let (shown, parts) = (self.output.display(), self.parts.len());
         print(&format!("{shown}: {width}×{height} from {parts} parts"));
         Ok(())

@@ -12,7 +12,7 @@ use crate::scene::toml_text::{bare_or_quoted, quoted};
 pub fn is_of_looks(path: &str) -> bool {
     let starts = |prefixes: &[&str]| prefixes.iter().any(|prefix| path.starts_with(prefix));
     starts(&["materials.", "lights.", "background."])
-        || ["ambient_light", "picture.exposure"].contains(&path)
+        || ["ambient_light", "picture.exposure", "picture.tone"].contains(&path)
         || path.starts_with("solids.") && path.ends_with(".material")
 }
 

@@ -1,5 +1,6 @@
 //! What the eye gets: a picture in linear floats, its development to 8 bits, and picture files.
 
+pub mod clipping;
 pub mod develop;
 pub mod embedded;
 mod hdr;
@@ -7,6 +8,7 @@ pub mod layout;
 pub mod pixels;
 pub mod plates;
 pub mod sheet;
+pub mod tone;
 pub mod write;
 
 use crate::color::Rgb;

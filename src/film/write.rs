@@ -4,12 +4,11 @@ use std::fmt;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use super::develop::{self, code16};
+use super::develop::{self, Development, code8, code16};
 use super::hdr::hdr;
 use super::plates::Plates;
 use super::{Film, Frame};
-use crate::color::{Rgb, srgb_byte};
-use crate::math::exposure_factor;
+use crate::color::Rgb;
 
 /// A picture format and its depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,14 +68,14 @@ pub fn picture(
     path: &Path,
     format: Format,
     plates: &Plates,
-    exposure: f32,
+    development: Development,
     scene: &str,
 ) -> Result<(), WriteError> {
     let Plates { film, coverage, layers: _ } = plates;
     atomically(path, |out| match (format, coverage) {
-        (Format::Png8, None) => png8(out, &develop::frame(film, exposure), scene),
-        (Format::Png8, Some(_)) => png8_alpha(out, plates, exposure, scene),
-        (Format::Png16, _) => png16(out, plates, exposure, scene),
+        (Format::Png8, None) => png8(out, &develop::frame(film, development), scene),
+        (Format::Png8, Some(_)) => png8_alpha(out, plates, development, scene),
+        (Format::Png16, _) => png16(out, plates, development, scene),
         (Format::Exr, _) => exr_floats(out, plates, scene),
         (Format::Hdr, _) => hdr(out, film, scene),
     })
@@ -185,15 +184,14 @@ fn png8(out: &mut dyn WriteSeek, frame: &Frame, scene: &str) -> Result<(), Strin
 fn png8_alpha(
     out: &mut dyn WriteSeek,
     plates: &Plates,
-    exposure: f32,
+    development: Development,
     scene: &str,
 ) -> Result<(), String> {
     let size = plates.film.layout.size;
-    let gain = exposure_factor(exposure);
     let mut data = Vec::with_capacity(size[0] as usize * size[1] as usize * 4);
     for pixel in pixels(size) {
         let (light, alpha) = uncovered(plates, pixel);
-        data.extend(light.0.map(|channel| srgb_byte(channel * gain)));
+        data.extend(code8(light, development));
         data.push((alpha * 255.0).round() as u8);
     }
     png_file(out, size, (png::BitDepth::Eight, true), &data, scene)
@@ -202,16 +200,15 @@ fn png8_alpha(
 fn png16(
     out: &mut dyn WriteSeek,
     plates: &Plates,
-    exposure: f32,
+    development: Development,
     scene: &str,
 ) -> Result<(), String> {
     let size = plates.film.layout.size;
-    let gain = exposure_factor(exposure);
     let mut data = Vec::with_capacity(size[0] as usize * size[1] as usize * 8);
     let has_alpha = plates.coverage.is_some();
     for pixel in pixels(size) {
         let (light, alpha) = uncovered(plates, pixel);
-        data.extend(code16(light, gain).into_iter().flat_map(u16::to_be_bytes));
+        data.extend(code16(light, development).into_iter().flat_map(u16::to_be_bytes));
         if has_alpha {
             data.extend(((alpha * 65_535.0).round() as u16).to_be_bytes());
         }
@@ -280,6 +277,7 @@ fn exr_floats(out: &mut dyn WriteSeek, plates: &Plates, scene: &str) -> Result<(
 mod tests {
     use super::super::layout::Layout;
     use super::*;
+    use crate::scene::tone::Tone;
 
     fn film() -> Film {
         let mut film = Film::new(Layout::new([9, 5]));
@@ -292,6 +290,11 @@ mod tests {
         film
     }
 
+    /// Half a stop brighter.
+    fn development() -> Development {
+        Development { gain: crate::math::exposure_factor(0.5), tone: Tone::Neutral }
+    }
+
     #[test]
     fn equal_pictures_give_equal_files_and_the_scene_is_inside() {
         let folder = tempfile::tempdir().unwrap();
@@ -299,7 +302,8 @@ mod tests {
             let path = folder.path().join(name);
             let write = || {
                 let format = Format::of(&path, deep).unwrap();
-                picture(&path, format, &Plates::of(film()), 0.5, "version = 1 # µ").unwrap();
+                picture(&path, format, &Plates::of(film()), development(), "version = 1 # µ")
+                    .unwrap();
                 std::fs::read(&path).unwrap()
             };
             let first = write();
@@ -314,12 +318,12 @@ mod tests {
     fn png_holds_the_developed_pixels() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
-        picture(&path, Format::Png8, &Plates::of(film()), 0.0, "").unwrap();
+        picture(&path, Format::Png8, &Plates::of(film()), development(), "").unwrap();
         let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
         let mut reader = png::Decoder::new(file).read_info().unwrap();
         let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut bytes).unwrap();
-        let frame = develop::frame(&film(), 0.0);
+        let frame = develop::frame(&film(), development());
         let rgb: Vec<u8> = frame.bytes.chunks(4).flat_map(|p| p[..3].to_vec()).collect();
         assert_eq!(bytes, rgb);
     }
@@ -333,7 +337,7 @@ mod tests {
         assert!(error.to_string().ends_with("old.png: disc full"), "{error}");
         assert_eq!(std::fs::read(&path).unwrap(), b"old");
         let missing = folder.path().join("no/such/folder.png");
-        assert!(picture(&missing, Format::Png8, &Plates::of(film()), 0.0, "").is_err());
+        assert!(picture(&missing, Format::Png8, &Plates::of(film()), development(), "").is_err());
         assert!(Format::of(Path::new("a.jpg"), false).is_err());
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "left-over files");
     }

@@ -74,7 +74,7 @@ pub(super) fn scene(solids: Vec<Solid>) -> Scene {
     let checker = Paint::Checker { a: Rgb::WHITE, b: Rgb::BLACK, size: 1.0 };
     Scene {
         ambient_light: Rgb::WHITE,
-        picture: Picture { size: [1, 1], exposure: 0.0 },
+        picture: Picture { size: [1, 1], ..Picture::default() },
         camera: Camera {
             eye: DVec3::ZERO,
             target: DVec3::X,

@@ -49,7 +49,7 @@ pub struct Change {
     pub terms: bool,
     /// Among them a factor of the seen path, or a limit of liveness: branches may come alive.
     pub branches: bool,
-    /// Only how the sum is shown differs: exposure.
+    /// Only how the sum is shown differs: exposure, tone.
     pub develop: bool,
 }
 
@@ -202,9 +202,9 @@ impl Change {
     }
 
     fn picture(&mut self, old: &Picture, new: &Picture) {
-        let Picture { size, exposure } = old;
+        let Picture { size, exposure, tone } = old;
         self.ray(*size != new.size, "picture.size");
-        self.develop |= *exposure != new.exposure;
+        self.develop |= *exposure != new.exposure || *tone != new.tone;
     }
 
     fn camera(&mut self, old: &Camera, new: &Camera) {

@@ -12,6 +12,7 @@ use super::mesh::Mesh;
 use super::model::Model;
 use super::motion::Motion;
 use super::refine::Refine;
+use super::tone::Tone;
 use super::{
     Background, Bump, Camera, ImageFile, Lens, Material, Paint, Picture, Scene, Shape, Solid, Trace,
 };
@@ -35,7 +36,7 @@ impl Default for Scene {
 
 impl Default for Picture {
     fn default() -> Picture {
-        Picture { size: [640, 360], exposure: 0.0 }
+        Picture { size: [640, 360], exposure: 0.0, tone: Tone::None }
     }
 }
 

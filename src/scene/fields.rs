@@ -163,10 +163,11 @@ pub fn camera(camera: &mut Camera, v: &mut dyn Visit) {
 
 /// Visits `[picture]`.
 pub fn picture(picture: &mut Picture, v: &mut dyn Visit) {
-    let Picture { size, exposure } = picture;
+    let Picture { size, exposure, tone } = picture;
     let side = Range::closed(1.0, super::MAX_SIDE as f64);
     v.leaf("size", Need::Optional, Slot::Pair(size, side));
     v.leaf("exposure", Need::Optional, Slot::Single(exposure, Range::closed(-30.0, 30.0)));
+    v.leaf("tone", Need::Optional, Slot::Choice(tone));
 }
 
 /// Visits `[trace]`.

@@ -34,6 +34,7 @@ pub mod seams;
 pub mod slot;
 pub mod texture;
 pub(crate) mod toml_text;
+pub mod tone;
 pub mod value;
 pub mod write;
 
@@ -51,6 +52,7 @@ use model::Model;
 use motion::Motion;
 pub use paint::{Background, Bump, ImageFile, Paint};
 use refine::Refine;
+use tone::Tone;
 
 /// A whole scene. Lengths are in one unit of the user's choice, colours linear Rec. 709.
 ///
@@ -60,7 +62,7 @@ use refine::Refine;
 pub struct Scene {
     /// Light that reaches every surface from everywhere; multiplies each material's `ambient`.
     pub ambient_light: Rgb,
-    /// Size and exposure of the picture.
+    /// Size of the picture, and how its light is shown.
     pub picture: Picture,
     /// Where the eye is and what it sees.
     pub camera: Camera,
@@ -129,6 +131,8 @@ pub struct Picture {
     pub size: [u32; 2],
     /// Stops: the picture is multiplied by 2^exposure before it is encoded.
     pub exposure: f32,
+    /// What is done with light that is brighter than white.
+    pub tone: Tone,
 }
 
 /// Longest side of a picture, in pixels.

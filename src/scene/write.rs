@@ -181,6 +181,7 @@ mod tests {
     use super::*;
     use crate::color::Rgb;
     use crate::scene::filter::Filter;
+    use crate::scene::tone::Tone;
     use crate::scene::{Background, Bump, Lens, LightPlace, Paint, read};
 
     /// Whether two scenes are the same to the last bit: `-0` is not `0`, unlike `==`.
@@ -193,7 +194,7 @@ mod tests {
     fn everything() -> Scene {
         let mut scene = Scene { ambient_light: Rgb([0.1, 0.2, 0.3]), ..Scene::default() };
         scene.picture.size = [1280, 720];
-        scene.picture.exposure = -1.3;
+        (scene.picture.exposure, scene.picture.tone) = (-1.3, Tone::Neutral);
         scene.camera.eye = DVec3::new(1e-7, -8.0, 1.0 / 3.0);
         scene.camera.target = DVec3::new(-0.0, 5e-324, 1e12);
         scene.camera.up = DVec3::new(0.1, 1.0, 0.0);

@@ -23,6 +23,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
+use crate::film::develop::Development;
 use crate::film::layout::TILE_BLOCKS;
 use crate::film::{Film, Frame};
 use crate::fold::Names;
@@ -33,7 +34,6 @@ use crate::forest::grow::{Grower, RayCounts};
 use crate::forest::tree::TileTrees;
 use crate::forest::{Before, Forest};
 use crate::geometry::Geometry;
-use crate::math::exposure_factor;
 use crate::progress::Progress;
 use crate::scene::change::Change;
 use crate::scene::factor::FactorValues;
@@ -421,10 +421,10 @@ impl Session {
             return;
         }
         let owed = self.canvas.take_owed();
-        let gain = exposure_factor(self.scene.picture.exposure);
+        let development = Development::of(&self.scene.picture);
         let values = &self.terms.values;
         let frame = self.canvas.edit();
-        cpu::frame(&self.pool, &self.transport, values, gain, Tiles::Marked(&owed), frame);
+        cpu::frame(&self.pool, &self.transport, values, development, Tiles::Marked(&owed), frame);
     }
 
     /// Draws the present trees as `scene` shows them, as far as they reach: pixels that a plan for it
@@ -432,8 +432,8 @@ impl Session {
     pub(super) fn draw_ahead(&self, scene: &Scene, change: &Change, frame: &mut Frame) {
         let mut terms = TermValues::default();
         terms.evaluate(&self.program, &self.factors_ahead(scene, change));
-        let gain = exposure_factor(scene.picture.exposure);
-        cpu::frame(&self.pool, &self.transport, &terms.values, gain, Tiles::All, frame);
+        let development = Development::of(&scene.picture);
+        cpu::frame(&self.pool, &self.transport, &terms.values, development, Tiles::All, frame);
     }
 
     /// Traces the same scene again, into the memory of the present trees.

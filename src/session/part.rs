@@ -20,14 +20,17 @@ use super::cache::codec::{Section, Source, Unsound};
 use super::cache::{file::hashes, program};
 use super::still::Still;
 use super::trace::{TraceError, TraceReport};
+use crate::film::develop::Development;
 use crate::film::layout::{LANES, Layout, TILE_BLOCKS};
 use crate::film::write::Unfinished;
 use crate::film::{Film, FilmBlock};
+use crate::math::exposure_factor;
 use crate::progress::Progress;
+use crate::scene::tone::Tone;
 use crate::scene::{MAX_PIXELS, Scene, write};
 
 /// How the file begins; the last byte is the format's version.
-const MAGIC: &[u8; 16] = b"RAYFOREST PART \x01";
+const MAGIC: &[u8; 16] = b"RAYFOREST PART \x02";
 /// Bytes before the header.
 const PREFIX: usize = MAGIC.len() + 16;
 /// Bytes of a tile's light.
@@ -131,6 +134,7 @@ struct Picture {
     scene: String,
     size: [u32; 2],
     exposure: f32,
+    tone: Tone,
 }
 
 impl Picture {
@@ -145,17 +149,19 @@ impl Picture {
             scene: text,
             size: scene.picture.size,
             exposure: scene.picture.exposure,
+            tone: scene.picture.tone,
         }
     }
 
     /// What differs in another's, in words.
     fn difference(&self, other: &Picture) -> Option<&'static str> {
-        let Picture { program, hash, scene, size, exposure } = self;
+        let Picture { program, hash, scene, size, exposure, tone } = self;
+        let shown_alike = exposure.to_bits() == other.exposure.to_bits() && *tone == other.tone;
         if *program != other.program {
             Some("they come from different versions of the program")
         } else if *size != other.size {
             Some("the pictures have different sizes")
-        } else if *scene != other.scene || exposure.to_bits() != other.exposure.to_bits() {
+        } else if *scene != other.scene || !shown_alike {
             Some("the scenes differ")
         } else {
             (*hash != other.hash).then_some("a file that the scene names differs")
@@ -166,12 +172,13 @@ impl Picture {
 impl Header {
     fn bytes(&self) -> Vec<u8> {
         let Header { picture, share: Share { number, of } } = self;
-        let Picture { program, hash, scene, size: [width, height], exposure } = picture;
+        let Picture { program, hash, scene, size: [width, height], exposure, tone } = picture;
         let mut section = Section::default();
         section.array(program.as_bytes());
         section.value(*hash);
         section.array(scene.as_bytes());
         section.value(*exposure);
+        section.value(*tone as u8);
         [width, height, number, of].into_iter().for_each(|&value| section.value(value));
         let body = section.bytes;
         let mut out = MAGIC.to_vec();
@@ -186,7 +193,9 @@ impl Header {
         let mut source = Source::new(body);
         let program = text(source.array()?)?;
         let (hash, scene) = (source.value()?, text(source.array()?)?);
-        let exposure = source.value()?;
+        let (exposure, tone) = (source.value()?, source.value::<u8>()?);
+        let tone =
+            *Tone::ALL.get(usize::from(tone)).ok_or("it holds numbers that no picture has")?;
         let size: [u32; 2] = [source.value()?, source.value()?];
         let share = Share { number: source.value()?, of: source.value()? };
         source.end()?;
@@ -194,7 +203,7 @@ impl Header {
         if pixels == 0 || pixels > MAX_PIXELS || share.number < 1 || share.number > share.of {
             return Err("it holds numbers that no picture has");
         }
-        Ok(Header { picture: Picture { program, hash, scene, size, exposure }, share })
+        Ok(Header { picture: Picture { program, hash, scene, size, exposure, tone }, share })
     }
 }
 
@@ -320,8 +329,8 @@ pub struct Merged {
     pub film: Film,
     /// The text of its scene.
     pub scene: String,
-    /// Its exposure in stops.
-    pub exposure: f32,
+    /// How it is shown.
+    pub development: Development,
 }
 
 /// Puts a picture together from all of its parts, in any order.
@@ -359,5 +368,6 @@ pub fn merge(paths: &[PathBuf]) -> Result<Merged, PartError> {
     for part in parts {
         part.read_into(&mut film)?;
     }
-    Ok(Merged { film, scene: first.picture.scene, exposure: first.picture.exposure })
+    let Picture { program: _, hash: _, scene, size: _, exposure, tone } = first.picture;
+    Ok(Merged { film, scene, development: Development { gain: exposure_factor(exposure), tone } })
 }

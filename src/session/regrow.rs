@@ -11,6 +11,7 @@ use super::pilots::{Pilots, Survey};
 use super::plan::{Plan, PlanTile};
 use super::trace::{LEAST_BLOCK_LIMIT, TraceError, claim};
 use crate::film::Frame;
+use crate::film::develop::Development;
 use crate::film::layout::TILE_BLOCKS;
 use crate::fold::merge::Blocks;
 use crate::fold::stay::Stay;
@@ -25,7 +26,6 @@ use crate::forest::scope::Scope;
 use crate::forest::tree::TileTrees;
 use crate::forest::{Before, Forest};
 use crate::geometry::Geometry;
-use crate::math::exposure_factor;
 use crate::progress::Progress;
 use crate::scene::change::Change;
 use crate::scene::factor::FactorValues;
@@ -297,8 +297,8 @@ impl Patch {
         let factors = FactorValues::new(scene).with_lights_at(&regrow.names.lights);
         let mut terms = TermValues::default();
         terms.evaluate(&TermProgram::new(&self.trie), &factors);
-        let gain = exposure_factor(scene.picture.exposure);
-        cpu::frame_blocks((self.tile, self.blocks), &self.part, &terms.values, gain, frame);
+        let development = Development::of(&scene.picture);
+        cpu::frame_blocks((self.tile, self.blocks), &self.part, &terms.values, development, frame);
     }
 
     /// The ids of its terms in `trie`, to which they are added.

@@ -11,7 +11,7 @@ use fearless_simd::{Level, dispatch};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
-use crate::film::develop::{FrameRows, tile_rows};
+use crate::film::develop::{Development, FrameRows, tile_rows};
 use crate::film::layout::{LANES, Layout, TILE_BLOCKS};
 use crate::film::{Film, FilmBlock, Frame};
 use crate::fold::merge::Blocks;
@@ -60,12 +60,12 @@ pub fn film_tiles(
     });
 }
 
-/// The picture as shown, of the tiles asked for: product, `gain` and sRGB in one pass.
+/// The picture as shown, of the tiles asked for: product, development and sRGB in one pass.
 pub fn frame(
     pool: &ThreadPool,
     transport: &Transport,
     values: &[[f32; 4]],
-    gain: f32,
+    development: Development,
     tiles: Tiles,
     frame: &mut Frame,
 ) {
@@ -80,7 +80,7 @@ pub fn frame(
                 if tiles.has(index) {
                     let tile = &transport.tiles[index];
                     gather(tile, values, gathered);
-                    dispatch!(level, _simd => frame_tile(tile, gathered, gain, column, &mut rows));
+                    dispatch!(level, _simd => frame_tile(tile, gathered, development, column, &mut rows));
                 }
             }
         });
@@ -93,7 +93,7 @@ pub fn frame_blocks(
     (tile, blocks): (usize, Blocks),
     part: &TransportTile,
     values: &[[f32; 4]],
-    gain: f32,
+    development: Development,
     frame: &mut Frame,
 ) {
     let columns = Layout::new(frame.size).grid()[0];
@@ -102,7 +102,7 @@ pub fn frame_blocks(
     let mut rows = tile_rows(frame).nth(tile / columns).expect("a tile of the picture");
     let marked = (0..TILE_BLOCKS).filter(|block| blocks >> block & 1 != 0);
     for (index, block) in marked.enumerate() {
-        rows.put(tile % columns, block, &sum(part.block(index), &gathered), gain);
+        rows.put(tile % columns, block, &sum(part.block(index), &gathered), development);
     }
 }
 
@@ -124,12 +124,12 @@ fn film_tile(tile: &TransportTile, values: &[[f32; 4]], blocks: &mut [FilmBlock]
 fn frame_tile(
     tile: &TransportTile,
     values: &[[f32; 4]],
-    gain: f32,
+    development: Development,
     column: usize,
     rows: &mut FrameRows,
 ) {
     for block in 0..TILE_BLOCKS {
-        rows.put(column, block, &sum(tile.block(block), values), gain);
+        rows.put(column, block, &sum(tile.block(block), values), development);
     }
 }
 

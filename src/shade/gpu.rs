@@ -23,6 +23,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering::{Acquire, Release};
 use std::time::{Duration, Instant};
 
+use crate::film::develop::Development;
 use crate::film::layout::{LANES, TILE_BLOCKS};
 use crate::film::{Film, FilmBlock};
 use crate::fold::transport::Transport;
@@ -41,6 +42,8 @@ pub struct Product {
     matrix: Option<Matrix>,
     /// All pictures that are shown, were, or may be again.
     pictures: Vec<Arc<Picture>>,
+    /// Whether clipped pixels are marked in what is drawn.
+    marks: bool,
     /// Whether the card is still at the picture that it was told to draw last.
     is_busy: Arc<AtomicBool>,
 }
@@ -76,7 +79,13 @@ impl Product {
         let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
         let look = gpu.buffer("look", size_of::<Look>() as u64, usage);
         let is_busy = Arc::default();
-        Product { gpu, limits, look, matrix: None, pictures: Vec::new(), is_busy }
+        Product { gpu, limits, look, matrix: None, pictures: Vec::new(), marks: false, is_busy }
+    }
+
+    /// Whether pixels that a screen cannot show are marked from now on, as
+    /// [`mark`](crate::film::clipping::mark) does it.
+    pub fn mark_clipped(&mut self, on: bool) {
+        self.marks = on;
     }
 
     /// How many bindings the matrix's planes are spread over.
@@ -123,13 +132,13 @@ impl Product {
         Ok(film)
     }
 
-    /// The picture as shown: product, `gain` and sRGB in one pass. Waits for the one before, not for
+    /// The picture as shown: product, development and sRGB in one pass. Waits for the one before, not for
     /// this: whatever the card is told to do with it afterwards finds it done.
     pub fn frame(
         &mut self,
         transport: &Transport,
         values: &[[f32; 4]],
-        gain: f32,
+        development: Development,
     ) -> Result<Arc<Picture>, GpuError> {
         let gpu = self.gpu.clone();
         let size = transport.layout.size;
@@ -137,7 +146,7 @@ impl Product {
         let drawn = caught(&gpu.device, || {
             self.ready(transport, values)?;
             let picture = self.free_picture(size);
-            self.write_look(gain);
+            self.write_look(development);
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             self.draw(&mut encoder.begin_compute_pass(&Default::default()), &picture);
             gpu.queue.submit([encoder.finish()]);
@@ -170,9 +179,9 @@ impl Product {
         }
     }
 
-    fn write_look(&self, gain: f32) {
+    fn write_look(&self, Development { gain, tone }: Development) {
         let mut bytes = Vec::new();
-        Look { gain }.write(&mut bytes);
+        Look { gain, tone: tone as u32, marks: u32::from(self.marks) }.write(&mut bytes);
         self.gpu.queue.write_buffer(&self.look, 0, &bytes);
     }
 

@@ -14,10 +14,19 @@ const LANES: u32 = 16u;
 const TILE_BLOCKS: u32 = 64u;
 // Threads that run together: those of some blocks.
 const GROUP: u32 = 64u;
+// The tone curve that is not the identity.
+const NEUTRAL: u32 = 1u;
+// Marks on pixels brighter than white, and darker than black: 0xRRGGBB.
+const OVER: u32 = 0xff0050u;
+const UNDER: u32 = 0x0078ffu;
 
 // What is shown of the light.
 struct Look {
     gain: f32,
+    // Index of the tone curve.
+    tone: u32,
+    // Whether clipped pixels are marked: 0 or 1.
+    marks: u32,
 }
 
 // The first pixel of a tile, counted from the corner of the texture.
@@ -73,7 +82,7 @@ fn film(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     light[at].rows[2][lane] = pixel.b;
 }
 
-// The picture as shown: product, gain and sRGB in one pass.
+// The picture as shown: product, development and sRGB in one pass.
 @compute @workgroup_size(GROUP)
 fn frame(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
     let tile = group.y;
@@ -86,7 +95,7 @@ fn frame(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_inde
         + vec2<u32>(lane % BLOCK, lane / BLOCK);
     // Blocks may hang over the edge of the picture.
     if all(at < textureDimensions(shown)) {
-        textureStore(shown, at, encode(pixel, look.gain));
+        textureStore(shown, at, encode(pixel));
     }
 }
 
@@ -121,13 +130,55 @@ fn sum_singles(start: u32, end: u32, lane: u32) -> vec3<f32> {
     return sum;
 }
 
-// A pixel as sRGB code values, a fraction of the greatest.
-fn encode(light: vec3<f32>, gain: f32) -> vec4<f32> {
+// A pixel as sRGB code values, a fraction of the greatest; or its mark, if it is clipped.
+fn encode(light: vec3<f32>) -> vec4<f32> {
+    let exposed = light * look.gain;
+    var displayed = exposed;
+    if look.tone == NEUTRAL {
+        displayed = neutral(exposed);
+    }
+    if look.marks != 0u {
+        let mark = mark_of(light, displayed);
+        if mark != 0u {
+            let color = vec3<u32>(mark >> 16u, mark >> 8u & 255u, mark & 255u);
+            return vec4<f32>(vec3<f32>(color) / 255.0, 1.0);
+        }
+    }
     var code = vec3<f32>(0.0);
     for (var channel = 0u; channel < 3u; channel++) {
-        code[channel] = round(srgb_code(light[channel] * gain)) / 255.0;
+        code[channel] = round(srgb_code(displayed[channel])) / 255.0;
     }
     return vec4<f32>(code, 1.0);
+}
+
+// Twin of film/clipping.rs: the colour of the mark, 0 where there is none.
+fn mark_of(light: vec3<f32>, displayed: vec3<f32>) -> u32 {
+    if any(displayed >= vec3<f32>(1.0)) {
+        return OVER;
+    }
+    return select(UNDER, 0u, all(light >= vec3<f32>(0.0)));
+}
+
+// Twin of film/tone.rs: Khronos PBR Neutral.
+fn neutral(exposed: vec3<f32>) -> vec3<f32> {
+    let sheen = 0.04;
+    let start = 0.8 - sheen;
+    let desaturation = 0.15;
+    let most = 1e9;
+    var color = select(vec3<f32>(0.0), exposed, exposed > vec3<f32>(0.0));
+    color = select(vec3<f32>(most), color, color < vec3<f32>(most));
+    let x = min(min(color.r, color.g), color.b);
+    let offset = select(sheen, x - 6.25 * x * x, x < 2.0 * sheen);
+    color -= offset;
+    let p = max(max(color.r, color.g), color.b);
+    if p < start {
+        return color;
+    }
+    let d = 1.0 - start;
+    let peak = 1.0 - d * d / (p + d - start);
+    let scaled = color * (peak / p);
+    let white = 1.0 - 1.0 / (desaturation * (p - peak) + 1.0);
+    return scaled + (vec3<f32>(peak) - scaled) * white;
 }
 
 // The sRGB curve of IEC 61966-2-1, 0 … 255 as a fraction of a code value; input clamped to 0 … 1.

@@ -62,6 +62,7 @@ fn about_key(key: &str) -> &'static str {
         }
         "shutter" => "Share of the solids' motion that the picture sees; 0: it stands still",
         "exposure" => "Brightness of the picture in stops: +1 doubles it",
+        "tone" => "How light brighter than white is shown: cut off, or compressed",
         "refine" => {
             "What of neighbouring samples is compared: trees: what rays met, and cosines; contrast: \
              colours, decided again after every edit"
@@ -185,6 +186,10 @@ pub(crate) fn choice(name: &str) -> &'static str {
         "gaussian" => "Very smooth, a little soft",
         "trees" => "What rays met and how they met it: colours do not matter",
         "contrast" => "The colours that samples show",
+        "none" => "Light as it is; what is brighter than white is cut off",
+        "neutral" => {
+            "Khronos PBR Neutral: colours as they are up to 0.8, highlights compressed instead of cut off"
+        }
         "point" => "A light at a point, in all directions",
         "direction" => "A light infinitely far away",
         "spot" => "A light at a point, into a cone",
@@ -259,6 +264,7 @@ mod tests {
     use crate::scene::model::Model;
     use crate::scene::path::parameters;
     use crate::scene::refine::Refine;
+    use crate::scene::tone::Tone;
     use crate::scene::{
         Background, Bump, Lens, Light, LightPlace, Material, Paint, Scene, Shape, Solid,
     };
@@ -303,7 +309,8 @@ mod tests {
 
     #[test]
     fn every_choice_is_explained() {
-        for name in Model::NAMES.iter().chain(Filter::NAMES).chain(Refine::NAMES) {
+        let names = [Model::NAMES, Filter::NAMES, Refine::NAMES, Tone::NAMES];
+        for name in names.into_iter().flatten() {
             assert!(!choice(name).is_empty(), "{name}");
         }
         assert_eq!(choice("no such name"), "");

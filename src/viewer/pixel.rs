@@ -13,8 +13,7 @@ use super::inspector::Selection;
 use super::pixel_bars::bars_ui;
 use super::pixel_lines::{Line, Target, lines};
 use super::pixel_rows::rows_ui;
-use crate::film::develop::code8;
-use crate::math::exposure_factor;
+use crate::film::develop::{Development, code8};
 use crate::scene::Scene;
 use crate::session::inspect::{Bars, Met, PixelTree, TreeNode, bars, merged};
 use crate::session::live::Inspected;
@@ -244,7 +243,7 @@ fn column_ui(ui: &mut Ui, name: &str, width: f32, body: impl FnOnce(&mut Ui)) {
 
 /// A pixel's colour as bytes, as it is shown and written.
 fn shown_bytes(tree: &PixelTree) -> [u8; 3] {
-    code8(tree.light, exposure_factor(tree.scene.picture.exposure))
+    code8(tree.light, Development::of(&tree.scene.picture))
 }
 
 fn numbers_ui(ui: &mut Ui, tree: &PixelTree) {

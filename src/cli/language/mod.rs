@@ -88,7 +88,7 @@ fn document() -> String {
 fn sections() -> Vec<Section> {
     let mut all = vec![
         Section::of("## The scene", "", text::TABLES, &|_| {}).saying(text::SCENE),
-        Section::of("## `[picture]`", "picture.", &[], &|_| {}),
+        Section::of("## `[picture]`", "picture.", &[], &|_| {}).saying(text::picture()),
         Section::of("## `[camera]`", "camera.", &[], &|_| {}).saying(text::CAMERA),
     ];
     let (height, others) = (LENSES[1], ["eye", "target", "up", "aperture", "focus", "shutter"]);

@@ -5,6 +5,7 @@ use crate::scene::filter::Filter;
 use crate::scene::light::MOST_LIGHT_RAYS;
 use crate::scene::model::Model;
 use crate::scene::refine::Refine;
+use crate::scene::tone::Tone;
 use crate::scene::{MAX_KNOT_FACES, MAX_NAMED, MAX_PIXELS, PILOTS};
 use crate::viewer::hints;
 
@@ -73,6 +74,15 @@ pub(super) fn solids() -> String {
 fn choices(key: &str, names: &[&str]) -> String {
     let one = |name: &&str| format!("* `{key} = \"{name}\"`: {}\n", hints::choice(name));
     names.iter().map(one).collect()
+}
+
+/// What stands above the keys of the picture.
+pub(super) fn picture() -> String {
+    format!(
+        "Its size, and how its light becomes what is shown and written as PNG: times 2^`exposure`, \
+         through the `tone` curve, encoded as sRGB. OpenEXR files hold the light before that.\n\n{}",
+        choices("tone", Tone::NAMES)
+    )
 }
 
 pub(super) fn trace() -> String {

@@ -7,6 +7,7 @@ use std::sync::mpsc::{Receiver, Sender};
 use super::shader::Message;
 use super::tracer::Compiled;
 use super::{Export, guarded, pool};
+use crate::film::develop::Development;
 use crate::film::plates::Plates;
 use crate::film::write::{Format, check_writable, picture};
 use crate::forest::Forest;
@@ -70,7 +71,8 @@ fn export(options: Options, task: Task) -> Outcome {
         }
     };
     let text = write::text(&scene);
-    picture(&path, format, &plates, scene.picture.exposure, &text).map_err(|e| e.to_string())?;
+    picture(&path, format, &plates, Development::of(&scene.picture), &text)
+        .map_err(|e| e.to_string())?;
     Ok(Some(path))
 }
 

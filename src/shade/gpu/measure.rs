@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use super::device::{GpuError, caught};
 use super::{Matrix, Product, bytes_of};
+use crate::film::develop::Development;
 use crate::fold::transport::Transport;
 
 /// Milliseconds of one upload of a matrix and of one edit.
@@ -25,7 +26,7 @@ impl Product {
         &mut self,
         transport: &Transport,
         values: &[[f32; 4]],
-        gain: f32,
+        development: Development,
     ) -> Result<Timings, GpuError> {
         self.matrix = None;
         let begun = Instant::now();
@@ -39,7 +40,7 @@ impl Product {
         let [values, dispatch] = match self.gpu.has_clock() {
             true => {
                 let device = self.gpu.device.clone();
-                caught(&device, || self.timed(transport, values, gain))?.map(Some)
+                caught(&device, || self.timed(transport, values, development))?.map(Some)
             }
             false => [None; 2],
         };
@@ -51,10 +52,10 @@ impl Product {
         &mut self,
         transport: &Transport,
         values: &[[f32; 4]],
-        gain: f32,
+        development: Development,
     ) -> Result<[f64; 2], GpuError> {
         let picture = self.free_picture(transport.layout.size);
-        self.write_look(gain);
+        self.write_look(development);
         let gpu = self.gpu.clone();
         let Some(Matrix { values: target, .. }) = &self.matrix else { return Ok([0.0; 2]) };
         let usage = wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;

@@ -52,6 +52,10 @@ macro_rules! record {
 pub(super) struct Look {
     /// Factor of the exposure.
     pub(super) gain: f32,
+    /// Index of the tone curve.
+    pub(super) tone: u32,
+    /// Whether clipped pixels are marked: 0 or 1.
+    pub(super) marks: u32,
 }
 
 /// The first pixel of a tile, counted from the corner of its texture.
@@ -62,7 +66,7 @@ pub(super) struct Corner {
     pub(super) y: u32,
 }
 
-record!(Look { gain });
+record!(Look { gain, tone, marks });
 record!(Corner { x, y });
 record!(BlockStart { plane, single });
 record!(Single { place, coefficient });

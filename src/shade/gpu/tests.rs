@@ -10,8 +10,10 @@ use wgpu::naga::{Expression, Literal, Module, TypeInner};
 use super::device::GROUP;
 use super::parts::{Corner, Limits, Look, Record, parts, pieces};
 use crate::film::FilmBlock;
+use crate::film::clipping::{OVER, UNDER};
 use crate::film::layout::{BLOCK, LANES, Layout, TILE, TILE_BLOCKS};
 use crate::fold::transport::{BlockStart, Plane, Single, Transport, TransportTile};
+use crate::scene::tone::Tone;
 
 const SHADER: &str = include_str!("../shade.wgsl");
 
@@ -102,6 +104,9 @@ fn the_shader_has_the_constants_of_rust() {
         ("LANES", LANES as u32),
         ("TILE_BLOCKS", TILE_BLOCKS as u32),
         ("GROUP", GROUP),
+        ("NEUTRAL", Tone::Neutral as u32),
+        ("OVER", OVER),
+        ("UNDER", UNDER),
     ] {
         assert_eq!(constant(&module, name), value, "{name}");
     }

@@ -1,9 +1,10 @@
 //! The graphics card against the CPU: the same light within rounding, the same picture within a code value.
 
-use rayforest::film::{Film, Frame};
-use rayforest::math::exposure_factor;
+use rayforest::film::develop::Development;
+use rayforest::film::{Film, Frame, clipping};
 use rayforest::progress::Progress;
 use rayforest::scene::Scene;
+use rayforest::scene::tone::Tone;
 use rayforest::session::Session;
 use rayforest::shade::gpu::{Gpu, GpuError, Limits, Product};
 
@@ -48,8 +49,8 @@ fn assert_alike(gpu: &Gpu, product: &mut Product, session: &Session, what: &str)
     if let Some(difference) = light_difference(&session.film(), &film) {
         panic!("{what}: {difference}");
     }
-    let gain = exposure_factor(session.scene().picture.exposure);
-    let frame = product.frame(transport, values, gain).unwrap().read(gpu).unwrap();
+    let development = Development::of(&session.scene().picture);
+    let frame = product.frame(transport, values, development).unwrap().read(gpu).unwrap();
     if let Some(difference) = picture_difference(session.frame(), &frame) {
         panic!("{what}: {difference}");
     }
@@ -85,6 +86,7 @@ fn a_card_follows_every_class_of_edit() {
     for (path, value) in [
         ("materials.tiles.diffuse", "0.35"),
         ("picture.exposure", "1.3"),
+        ("picture.tone", "neutral"),
         ("materials.mirror.shininess", "7"),
         ("materials.glass.ior", "1.31"),
         ("materials.tiles.reflect", "0.4"),
@@ -96,6 +98,34 @@ fn a_card_follows_every_class_of_edit() {
         edit(&mut session, path, value);
         assert!(*session.frame() != before, "{path} = {value} is seen");
         assert_alike(&gpu, &mut product, &session, path);
+    }
+}
+
+#[test]
+fn a_card_marks_the_clipped_pixels_of_the_cpu() {
+    let gpu = gpu();
+    let mut product = Product::new(gpu.clone());
+    let mut scene = shipped("whitted", [190, 101], 4);
+    set(&mut scene, "trace.filter", "mitchell");
+    for tone in Tone::NAMES {
+        for exposure in ["0", "2.5"] {
+            set(&mut scene, "picture.exposure", exposure);
+            set(&mut scene, "picture.tone", tone);
+            let session = open(&scene, 2);
+            let development = Development::of(&session.scene().picture);
+            let mut frame = session.frame().clone();
+            let clipped = clipping::mark(&session.film(), development, &mut frame);
+            let expected = *tone == "none" && exposure == "2.5";
+            assert_eq!(clipped.over > 0, expected, "{tone} {exposure}: {clipped:?}");
+            let (transport, values) = (session.transport(), &session.terms().values);
+            product.mark_clipped(true);
+            let marked = product.frame(transport, values, development).unwrap();
+            let difference = picture_difference(&frame, &marked.read(&gpu).unwrap());
+            assert_eq!(difference, None, "{tone} {exposure}");
+            assert_eq!(frame != *session.frame(), clipped.over + clipped.under > 0);
+            product.mark_clipped(false);
+            assert_alike(&gpu, &mut product, &session, tone);
+        }
     }
 }
 
@@ -127,8 +157,8 @@ fn a_picture_that_is_too_large_for_a_texture_is_tiled() {
     let limits = Limits { texture_side: 70, ..gpu.limits() };
     let mut product = Product::within(gpu.clone(), limits);
     assert_alike(&gpu, &mut product, &session, "in textures of 64");
-    let gain = exposure_factor(session.scene().picture.exposure);
-    let picture = product.frame(session.transport(), &session.terms().values, gain).unwrap();
+    let development = Development::of(&session.scene().picture);
+    let picture = product.frame(session.transport(), &session.terms().values, development).unwrap();
     assert_eq!(picture.textures().count(), 6);
 }
 
@@ -138,10 +168,11 @@ fn a_picture_that_is_held_stays_what_it_is() {
     let session = open(&shipped("plain", [70, 40], 1), 1);
     let (transport, values) = (session.transport(), &session.terms().values);
     let mut product = Product::new(gpu.clone());
-    let held = product.frame(transport, values, 1.0).unwrap();
+    let held = product.frame(transport, values, Development::PLAIN).unwrap();
     let before = held.read(&gpu).unwrap();
     for gain in [0.5, 0.25, 2.0] {
-        let other = product.frame(transport, values, gain).unwrap().read(&gpu).unwrap();
+        let development = Development { gain, ..Development::PLAIN };
+        let other = product.frame(transport, values, development).unwrap().read(&gpu).unwrap();
         assert!(other != before, "gain {gain} is seen");
     }
     assert!(held.read(&gpu).unwrap() == before);
@@ -153,10 +184,11 @@ fn a_card_that_is_lost_says_so() {
     let session = open(&shipped("plain", [40, 20], 1), 1);
     let (transport, values) = (session.transport(), &session.terms().values);
     let mut product = Product::new(gpu.clone());
-    product.frame(transport, values, 1.0).unwrap();
+    product.frame(transport, values, Development::PLAIN).unwrap();
     assert_eq!(gpu.fault(), None);
     gpu.lose();
-    let lost = product.frame(transport, values, 1.0).err().expect("the card is gone");
+    let lost =
+        product.frame(transport, values, Development::PLAIN).err().expect("the card is gone");
     assert!(lost.is_lost(), "{lost:?}");
     assert!(lost.to_string().starts_with("the graphics card was lost ("), "{lost}");
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 use rayforest::color::Rgb;
+use rayforest::film::develop::Development;
 use rayforest::film::plates::Plates;
 use rayforest::film::write::{Format, picture};
 use rayforest::progress::Progress;
@@ -151,8 +152,8 @@ fn same_files_in_a_fresh_process(session: &Session, what: &str) {
     for ending in ["png", "exr"] {
         let (ours, theirs) = (at(&format!("ours.{ending}")), at(&format!("theirs.{ending}")));
         let format = Format::of(&ours, false).unwrap();
-        let exposure = session.scene().picture.exposure;
-        picture(&ours, format, &Plates::of(session.film()), exposure, &text).unwrap();
+        let development = Development::of(&session.scene().picture);
+        picture(&ours, format, &Plates::of(session.film()), development, &text).unwrap();
         let run = Command::new(env!("CARGO_BIN_EXE_rayforest"))
             .args([
                 "render".as_ref(),

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use rayforest::film::develop::Development;
 use rayforest::film::layout::Layout;
 use rayforest::forest::grow::RayCounts;
 use rayforest::geometry::Geometry;
@@ -49,7 +50,8 @@ fn merged_parts_are_the_picture_and_cast_its_rays_once_on_every_scene() {
         let merged = part::merge(&paths).unwrap();
         let difference = film_difference(&merged.film, &whole.film());
         assert_eq!(difference, None, "{name} in {of} parts");
-        assert_eq!((merged.scene, merged.exposure), (write::text(&scene), scene.picture.exposure));
+        let development = Development::of(&scene.picture);
+        assert_eq!((merged.scene, merged.development), (write::text(&scene), development));
         let mut sum = RayCounts::default();
         rays.into_iter().for_each(|rays| sum += rays);
         assert_eq!(sum, whole.trace_report().rays, "{name}: rays of all parts");

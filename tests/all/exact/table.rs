@@ -252,6 +252,7 @@ pub(super) const ROWS: &[Row] = &[
         "picture.exposure",
         &[("0", Reshade), ("-30", Reshade), ("1", Reshade), ("30", Reshade), ("@", Reshade)],
     ),
+    row("picture.tone", &[("neutral", Reshade), ("none", Reshade), ("@", Nothing)]),
     row("trace.samples", &[("1", Retrace), ("3", Retrace), ("@", Retrace)]),
     // With so few samples every pixel has all.
     row("trace.adaptive", &[("0.1", Nothing), ("1", Nothing), ("@", Nothing)]),

@@ -5,6 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
+use rayforest::film::develop::Development;
 use rayforest::film::plates::Plates;
 use rayforest::film::write::{Format, picture};
 use rayforest::progress::Progress;
@@ -38,7 +39,8 @@ fn render(scene: Scene, to: &Path) -> Vec<u8> {
     let options = Options { threads: 2, memory: 1 << 30 };
     let session = Session::open(scene, options, &Progress::default());
     let film = session.unwrap_or_else(|e| panic!("{e}")).film();
-    picture(to, Format::Png8, &Plates::of(film), 0.0, "").expect("a writable folder");
+    picture(to, Format::Png8, &Plates::of(film), Development::PLAIN, "")
+        .expect("a writable folder");
     decode_png(to).unwrap().2
 }
 

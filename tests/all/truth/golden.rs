@@ -5,6 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
+use rayforest::film::develop::Development;
 use rayforest::film::plates::Plates;
 use rayforest::film::write::{Format, picture};
 
@@ -20,7 +21,8 @@ fn shown(name: &str, diffuse: f32, to: &Path) -> Picture {
     let mut scene = shipped(name);
     scene.materials[0].diffuse = scene.materials[0].diffuse * diffuse;
     let film = open(scene).film();
-    picture(to, Format::Png16, &Plates::of(film), 0.0, "").expect("a writable folder");
+    picture(to, Format::Png16, &Plates::of(film), Development::PLAIN, "")
+        .expect("a writable folder");
     Picture::of_png16(to)
 }
 

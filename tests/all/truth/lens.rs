@@ -17,7 +17,7 @@ fn dark(size: [u32; 2], samples: u32, lens: Lens) -> Scene {
         ..Material::new("lamp")
     };
     Scene {
-        picture: Picture { size, exposure: 0.0 },
+        picture: Picture { size, ..Picture::default() },
         camera: Camera { eye: DVec3::ZERO, target: DVec3::Y, lens, ..Camera::default() },
         trace: Trace { samples, ..Trace::default() },
         materials: vec![lamp],

@@ -25,7 +25,7 @@ fn one_ray(eye: DVec3, direction: DVec3) -> Scene {
     let up = direction.any_orthonormal_vector();
     let lens = Lens::Parallel { height: 1.0 };
     Scene {
-        picture: Picture { size: [1, 1], exposure: 0.0 },
+        picture: Picture { size: [1, 1], ..Picture::default() },
         camera: Camera { eye, target: eye + direction, up, lens, ..Camera::default() },
         trace: Trace { samples: 1, depth: 64, cutoff: 0.0, ..Trace::default() },
         ..Scene::default()

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Shader;
-use crate::math::exposure_factor;
+use crate::film::develop::Development;
 use crate::session::Session;
 use crate::session::live::{Event, guarded};
 use crate::shade::gpu::{Gpu, GpuError, Picture, Product};
@@ -39,9 +39,9 @@ impl Shader {
 
     fn drawn_by_card(&mut self) -> Option<Arc<Picture>> {
         let (product, whole) = (self.product.as_mut()?, self.whole.as_ref()?);
-        let gain = exposure_factor(whole.scene().picture.exposure);
+        let development = Development::of(&whole.scene().picture);
         let (transport, values) = (whole.transport(), &whole.terms().values);
-        let cause = match guarded(|| product.frame(transport, values, gain)) {
+        let cause = match guarded(|| product.frame(transport, values, development)) {
             Ok(Ok(picture)) => return Some(picture),
             Ok(Err(error)) => error,
             Err(text) => GpuError::Failed(text),

@@ -16,7 +16,7 @@ const EXACT: f64 = 1e-6;
 /// One solid in the middle of the picture, everything around it 1.
 fn furnace(solid: Solid, material: Material) -> Scene {
     Scene {
-        picture: Picture { size: [32, 18], exposure: 0.0 },
+        picture: Picture { size: [32, 18], ..Picture::default() },
         background: Background::Color(Rgb::WHITE),
         trace: Trace { samples: 4, depth: 64, cutoff: 0.0, ..Trace::default() },
         materials: vec![material],

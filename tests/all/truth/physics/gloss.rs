@@ -18,7 +18,7 @@ fn scene(blurred: Material, eye: DVec3, samples: u32, solids: Vec<Solid>) -> Sce
     let up = eye.any_orthonormal_vector();
     let lens = Lens::Parallel { height: 1e-9 };
     Scene {
-        picture: Picture { size: [SIDE, SIDE], exposure: 0.0 },
+        picture: Picture { size: [SIDE, SIDE], ..Picture::default() },
         camera: Camera { eye, target: DVec3::ZERO, up, lens, ..Camera::default() },
         trace: Trace { samples, ..Trace::default() },
         materials: vec![blurred, white],

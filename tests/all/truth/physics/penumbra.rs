@@ -74,7 +74,7 @@ fn scene(edge: &Edge, place: LightPlace, [camera, light]: [u32; 2]) -> Scene {
     let eye = dvec3(2.0, 3.0, 3.0);
     let lens = Lens::Parallel { height: 1e-9 };
     Scene {
-        picture: Picture { size: [SIDE, SIDE], exposure: 0.0 },
+        picture: Picture { size: [SIDE, SIDE], ..Picture::default() },
         camera: Camera { eye, target: DVec3::ZERO, lens, ..Camera::default() },
         trace: Trace { samples: camera, ..Trace::default() },
         lights: vec![Light { place, falloff: 1.0, samples: light, ..Light::new("panel") }],

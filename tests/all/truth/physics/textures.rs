@@ -18,7 +18,7 @@ use super::{clear, light, mirror, one_ray, solid, sphere};
 /// A bumpy sphere in white surroundings.
 fn furnace(material: Material) -> Scene {
     Scene {
-        picture: Picture { size: [48, 36], exposure: 0.0 },
+        picture: Picture { size: [48, 36], ..Picture::default() },
         background: Background::Color(Rgb::WHITE),
         trace: Trace { samples: 4, depth: 12, cutoff: 0.0, ..Trace::default() },
         materials: vec![material],
@@ -70,7 +70,7 @@ fn a_checker_is_grey_at_the_horizon() {
     let paint = Paint::Checker { a: Rgb::WHITE, b: Rgb::BLACK, size: 1.0 };
     let floor = Material { paint, ambient: Rgb::WHITE, diffuse: Rgb::BLACK, ..Material::new("m") };
     let session = open(Scene {
-        picture: Picture { size: [96, 24], exposure: 0.0 },
+        picture: Picture { size: [96, 24], ..Picture::default() },
         camera: Camera {
             eye: DVec3::new(0.31, 0.17, 1.0),
             target: DVec3::new(0.9, 9.0, 0.6),
