@@ -1,5 +1,7 @@
 //! Linear light as three numbers, the sRGB curve that pictures are stored with, and colour temperature.
 
+pub mod notation;
+
 use std::ops::{Add, Mul, RangeInclusive};
 
 /// An amount of red, green and blue: scene-linear, Rec. 709 primaries, 1 = white of the picture.
@@ -92,6 +94,13 @@ pub fn linear_of_srgb(code: f64) -> f32 {
     let linear =
         if code <= 0.040_45 { code / 12.92 } else { libm::pow((code + 0.055) / 1.055, 2.4) };
     linear as f32
+}
+
+/// The sRGB code, 0 … 1, of linear light (IEC 61966-2-1), exactly; what lies outside of 0 … 1 is cut,
+/// and NaN gives 0. Undoes [`linear_of_srgb`] to the rounding of its `f32`.
+pub fn srgb_of_linear(linear: f64) -> f64 {
+    let x = linear.max(0.0).min(1.0);
+    if x <= 0.003_130_8 { x * 12.92 } else { 1.055 * libm::pow(x, 1.0 / 2.4) - 0.055 }
 }
 
 /// Temperatures that [`blackbody`] knows, in kelvin.

@@ -63,6 +63,8 @@ mod tests {
     use super::super::write::{Format, picture};
     use super::*;
     use crate::color::Rgb as Light;
+    use crate::film::develop::Development;
+    use crate::scene::tone::Tone;
 
     /// Light over fourteen powers of two, with dark and bright channels side by side.
     fn film(size: [u32; 2]) -> Film {
@@ -93,7 +95,8 @@ mod tests {
             let mut film = film(size);
             film.put([0, 0], Light([-0.5, 0.25, 3.0]));
             let format = Format::of(&path, false).unwrap();
-            picture(&path, format, &Plates::of(film.clone()), 2.0, text).unwrap();
+            let shown = Development { gain: 4.0, tone: Tone::Neutral };
+            picture(&path, format, &Plates::of(film.clone()), shown, text).unwrap();
             assert_eq!(scene(&path).unwrap().as_deref(), Some(text));
             let read = image::open(&path).unwrap().into_rgb32f();
             assert_eq!([read.width(), read.height()], size);

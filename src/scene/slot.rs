@@ -11,7 +11,7 @@ use super::ImageFile;
 use super::mesh::Mesh;
 use super::problem::Mistake;
 use super::range::{Kind, Range};
-use super::toml_text::{number, one_or_three, quoted, vector};
+use super::toml_text::{number, one_or_three, quoted, rgb, vector};
 use super::value::{Names, Target, element};
 use crate::color::Rgb;
 
@@ -105,9 +105,7 @@ impl Slot<'_> {
     /// The value as TOML, which reads back as the same bits.
     pub fn text(&self, names: &Names) -> String {
         match self {
-            Slot::Coefficient(Rgb(channels), _) => {
-                one_or_three(*channels, channels.map(f32::to_bits))
-            }
+            Slot::Coefficient(color, _) => rgb(**color),
             Slot::Single(x, _) => number(**x),
             Slot::Number(x, _) => number(**x),
             Slot::Whole(n, _) => n.to_string(),

@@ -4,8 +4,10 @@ use std::fmt;
 
 use glam::DVec3;
 
+use crate::color::Rgb;
+
 /// The shortest decimal that reads back as the same bits.
-pub(super) fn number<T: Copy + Into<f64> + fmt::Display + fmt::LowerExp>(x: T) -> String {
+pub(crate) fn number<T: Copy + Into<f64> + fmt::Display + fmt::LowerExp>(x: T) -> String {
     let wide: f64 = x.into();
     if wide == 0.0 && wide.is_sign_negative() {
         "-0.0".to_owned()
@@ -28,6 +30,11 @@ where
 {
     let [x, y, z] = values.map(number);
     if bits[0] == bits[1] && bits[1] == bits[2] { x } else { format!("[{x}, {y}, {z}]") }
+}
+
+/// A number, or `[r, g, b]` where channels differ.
+pub(crate) fn rgb(Rgb(channels): Rgb) -> String {
+    one_or_three(channels, channels.map(f32::to_bits))
 }
 
 /// A TOML basic string.

@@ -3,7 +3,9 @@
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use eframe::egui::{CentralPanel, Context, Frame, Margin, Panel, Popup, Ui, Vec2, ViewportCommand};
+use eframe::egui::{
+    CentralPanel, Context, Frame, Id, Margin, Panel, Popup, Ui, Vec2, ViewportCommand,
+};
 
 use super::Setup;
 use super::chart::ChartPanel;
@@ -12,11 +14,11 @@ use super::compare::Compare;
 use super::examples::Copied;
 use super::files::Files;
 use super::handles::{Handles, Stage};
-use super::inspector::{Known, Outcome, Selection, inspector_ui, paths};
+use super::inspector::{Known, Outcome, Selection, inspector_ui};
 use super::looks::Strip;
 use super::mass::MassPanel;
 use super::menu::{MenuState, menu_ui};
-use super::mixer::Mixer;
+use super::mixer::{Mixer, MixerKnown};
 use super::navigate::focused;
 use super::notice::Notices;
 use super::on_disk::Changes;
@@ -25,9 +27,11 @@ use super::picture::PictureView;
 use super::pixel::PixelPanel;
 use super::rename::Renaming;
 use super::screen::{Screen, wake};
+use super::slider;
 use super::status::status_ui;
 use super::style;
 use super::thumbs::Noted;
+use super::values::paths;
 use super::welcome::Welcome;
 use crate::document::recovery::Recovery;
 use crate::document::settings::Settings;
@@ -37,7 +41,7 @@ use crate::scene::{Camera, Scene, path};
 use crate::session::live::{Event, Live, Shown};
 
 /// How long the wheel may rest within one gesture.
-const WHEEL_REST: Duration = Duration::from_millis(400);
+pub(super) const WHEEL_REST: Duration = Duration::from_millis(400);
 
 /// The window: a document, its live session, and what is on the screen.
 pub struct App {
@@ -75,7 +79,9 @@ pub struct App {
     /// The selection whose costs are watched, and how many solids and materials the scene had.
     watched: Option<Vec<String>>,
     /// A gesture of the wheel lasts until then.
-    wheel_until: Option<Instant>,
+    pub(super) wheel_until: Option<Instant>,
+    /// The slider that the gesture belongs to, if it is one of a slider.
+    pub(super) lasting: Option<Id>,
     /// Size of the picture's view in points.
     view: Vec2,
     /// The window's title as it was set last.
@@ -142,6 +148,7 @@ impl App {
             pixel: PixelPanel::default(),
             watched: None,
             wheel_until: None,
+            lasting: None,
             view: Vec2::ZERO,
             title: String::new(),
             waker,
@@ -174,6 +181,7 @@ impl App {
         self.welcome_ui(ui, &mut commands);
         let outcome = self.panels(ui, &mut edited, &mut commands);
         let pick = outcome.pick.clone();
+        self.note_edit(&ctx, outcome.edit.clone());
         changed |= self.apply_outcome(outcome, &mut edited);
         changed |= self.picture_ui(ui, &mut edited);
         if changed {
@@ -264,7 +272,7 @@ impl App {
         if self.files.is_modal() {
             return Vec::new();
         }
-        let focused = ctx.egui_wants_keyboard_input();
+        let focused = ctx.egui_wants_keyboard_input() && !slider::has_keyboard(ctx);
         let plain = |c: &Command| c.shortcut().is_some_and(|s| s.modifiers.is_none());
         // A text field has an undo of its own.
         let typing = ctx.text_edit_focused();
@@ -328,9 +336,11 @@ impl App {
         }
         let panel = Panel::bottom("mixer").resizable(true).default_size(130.0).min_size(60.0);
         let costs = self.live.costs();
-        let outcome = panel.show(ui, |ui| self.mixer.ui(ui, &mut edited.lights, &costs)).inner;
+        let known = MixerKnown { costs: &costs, saved: self.document.saved_scene() };
+        let outcome = panel.show(ui, |ui| self.mixer.ui(ui, &mut edited.lights, &known)).inner;
         self.mixer.open = !outcome.close;
         self.select(outcome.select);
+        self.note_edit(ui.ctx(), outcome.edit);
         *changed |= outcome.changed;
         outcome.step
     }
@@ -473,7 +483,7 @@ impl App {
     fn end_gesture(&mut self, ctx: &Context) {
         let wheel = self.wheel_until.is_some_and(|until| Instant::now() < until);
         if !wheel && !ctx.input(|i| i.pointer.any_down()) {
-            self.wheel_until = None;
+            (self.wheel_until, self.lasting) = (None, None);
             self.document.end_gesture();
         }
     }

@@ -8,7 +8,7 @@ use eframe::egui::{Align, Button, Context, DragValue, Layout, Panel, ProgressBar
 
 use super::app::App;
 use super::chart_plot::{Curve, plot_ui, table_ui};
-use super::control::typed;
+use super::number::typed;
 use crate::chart::{Advice, Chart, Goal, News, Wishes, measure, text_of};
 use crate::progress::Progress;
 use crate::scene::Scene;

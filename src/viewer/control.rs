@@ -1,15 +1,16 @@
 //! One row of the inspector: name, control, cost.
 
-use eframe::egui::{Align, CollapsingHeader, Id, Stroke};
 use eframe::egui::{
-    Button, Checkbox, Color32, ComboBox, DragValue, Label, Layout, Rect, Response, RichText, Sense,
-    Slider, SliderClamping, Ui, UiBuilder, pos2, vec2,
+    Align, Button, Checkbox, ComboBox, DragValue, Label, Layout, Rect, Response, RichText, Sense,
+    Ui, UiBuilder, vec2,
 };
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use super::badge::badge_ui;
+use super::coefficient::{channels_ui, coefficient_ui, color_ui, shows_channels};
+use super::corners::{loops_ui, points_ui};
 use super::hints;
-use crate::color::Rgb;
+use super::number::{Edit, FIELD, Face, Number, Precision, part, typed};
 use crate::scene::range::Range;
 use crate::scene::slot::{Choice, Slot};
 use crate::scene::value::Names;
@@ -17,10 +18,8 @@ use crate::session::cost::Cost;
 
 /// Width of the names.
 const NAME: f32 = 98.0;
-/// Width of a number field.
-const FIELD: f32 = 58.0;
 /// Width of the button that unfolds channels; kept free beside other sliders, so that all align.
-const TOGGLE: f32 = 30.0;
+pub(super) const TOGGLE: f32 = 30.0;
 /// Width of the badge.
 pub(super) const BADGE: f32 = 108.0;
 
@@ -36,6 +35,8 @@ pub(super) struct Row<'a> {
     pub(super) names: &'a Names,
     /// The saved value as TOML, if the present one differs.
     pub(super) saved: Option<&'a str>,
+    /// The value as TOML that the scene file need not state, if there is one.
+    pub(super) default: &'a dyn Fn() -> Option<String>,
     /// What an edit costs, if it is known.
     pub(super) cost: Option<Cost>,
 }
@@ -43,23 +44,65 @@ pub(super) struct Row<'a> {
 /// What the person did in a row.
 #[derive(Debug, Default)]
 pub(super) struct RowOutcome {
-    /// The value was edited.
-    pub(super) changed: bool,
+    /// What became of the value.
+    pub(super) edit: Edit,
     /// The saved value is wanted back.
     pub(super) reset: bool,
     /// Another file is wanted.
     pub(super) pick: bool,
 }
 
+impl Row<'_> {
+    /// The controls of the number in this place of the row's value.
+    pub(super) fn number(
+        &self,
+        name: String,
+        place: usize,
+        range: Range,
+        precision: Precision,
+    ) -> Number<'_> {
+        let saved = self.saved.and_then(|text| part(text, place, precision));
+        let Row { cost, default, .. } = *self;
+        Number {
+            scale: hints::scale(self.key, range, 0.0),
+            name,
+            bare: false,
+            range,
+            precision,
+            face: Face::Plain,
+            saved,
+            default: Box::new(move || part(&default()?, place, precision)),
+            limits: limits(cost),
+            about: Box::new(move |ui| about_ui(ui, self, Some(range))),
+        }
+    }
+
+    /// The same with a slider that covers the present value `x`.
+    pub(super) fn slider_ui(&self, ui: &mut Ui, x: &mut f64, number: Number<'_>) -> Edit {
+        let number = Number { scale: hints::scale(self.key, number.range, *x), ..number };
+        number.both_ui(ui, x, TOGGLE + ui.spacing().item_spacing.x)
+    }
+}
+
+/// Where an edit stops being instant.
+fn limits(cost: Option<Cost>) -> Vec<f64> {
+    use Cost::{InstantDownTo, InstantUpTo, InstantWithin, RereadBelow};
+    match cost {
+        Some(InstantUpTo(x, _) | InstantDownTo(x, _) | RereadBelow(x, _)) => vec![x],
+        Some(InstantWithin(ends, _)) => ends.to_vec(),
+        _ => Vec::new(),
+    }
+}
+
 /// Shows the control of one value and writes into it.
 pub(super) fn control_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> RowOutcome {
     let mut outcome = RowOutcome::default();
     if let Slot::Points(points, _) = slot {
-        points_ui(ui, row, points, &mut outcome);
+        outcome.edit = points_ui(ui, row, points);
         return outcome;
     }
     if let Slot::Loops(loops, range) = slot {
-        loops_ui(ui, row, loops, *range, &mut outcome);
+        outcome.edit = loops_ui(ui, row, loops, *range);
         return outcome;
     }
     let (name, value, badge) = columns(ui);
@@ -69,7 +112,7 @@ pub(super) fn control_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> Row
         return outcome;
     }
     column_ui(ui, name, |ui| name_ui(ui, row, slot, &mut outcome));
-    column_ui(ui, value, |ui| outcome.changed |= value_ui(ui, row, slot));
+    column_ui(ui, value, |ui| outcome.edit.join(value_ui(ui, row, slot)));
     // The name of a mesh file is not edited here.
     if !matches!(slot, Slot::Mesh { .. }) {
         column_ui(ui, badge, |ui| badge_ui(ui, row.key, row.cost, BADGE));
@@ -77,14 +120,14 @@ pub(super) fn control_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> Row
     if let Slot::Coefficient(color, range) = slot
         && shows_channels(ui, row, color)
     {
-        outcome.changed |= channels_ui(ui, row, color, *range);
+        outcome.edit.join(channels_ui(ui, row, color, *range));
     }
     outcome
 }
 
 /// Takes a row of the panel's width and cuts it into name, value and badge: the same in every row,
 /// whatever is in it.
-fn columns(ui: &mut Ui) -> (Rect, Rect, Rect) {
+pub(super) fn columns(ui: &mut Ui) -> (Rect, Rect, Rect) {
     let gap = ui.spacing().item_spacing.x;
     let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
     let (row, _) = ui.allocate_exact_size(size, Sense::hover());
@@ -94,7 +137,7 @@ fn columns(ui: &mut Ui) -> (Rect, Rect, Rect) {
 }
 
 /// Fills one column of a row.
-fn column_ui<R>(ui: &mut Ui, column: Rect, body: impl FnOnce(&mut Ui) -> R) -> R {
+pub(super) fn column_ui<R>(ui: &mut Ui, column: Rect, body: impl FnOnce(&mut Ui) -> R) -> R {
     let layout = Layout::left_to_right(Align::Center);
     body(&mut ui.new_child(UiBuilder::new().max_rect(column).layout(layout)))
 }
@@ -112,30 +155,40 @@ fn name_ui(ui: &mut Ui, row: &Row<'_>, slot: &Slot<'_>, outcome: &mut RowOutcome
     outcome.reset |= explained(ui.add(label), row, slot.range()).double_clicked();
 }
 
-/// The control itself; whether the value changed.
-fn value_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> bool {
-    match slot {
+/// The control itself.
+fn value_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> Edit {
+    let name = || row.key.to_owned();
+    let changed = match slot {
         Slot::Coefficient(color, range) if hints::is_color(row.key) => {
-            color_ui(ui, row, color, *range)
+            return color_ui(ui, row, color, *range);
         }
-        Slot::Coefficient(color, range) => coefficient_ui(ui, row, color, *range),
+        Slot::Coefficient(color, range) => return coefficient_ui(ui, row, color, *range),
         Slot::Single(x, range) => {
             let mut wide = f64::from(**x);
-            let changed = number_ui(ui, row, row.key, &mut wide, *range);
-            if changed {
+            let number = row.number(name(), 0, *range, Precision::Single);
+            let edit = row.slider_ui(ui, &mut wide, number);
+            if edit.changed {
                 **x = wide as f32;
             }
-            changed
+            return edit;
         }
-        Slot::Number(x, range) if has_slider(row.key) => number_ui(ui, row, row.key, x, *range),
-        Slot::Number(x, range) => field_ui(ui, row, row.key, x, *range),
+        Slot::Number(x, range) => {
+            let number = row.number(name(), 0, *range, Precision::Double);
+            return match has_slider(row.key) {
+                true => row.slider_ui(ui, x, number),
+                false => number.field_ui(ui, x, FIELD),
+            };
+        }
         Slot::Whole(n, range) => {
             let mut wide = f64::from(**n);
-            let changed = whole_ui(ui, row, &mut wide, *range);
-            if changed {
-                **n = wide as u32;
-            }
-            changed
+            let number = row.number(name(), 0, *range, Precision::Whole);
+            let mut edit = row.slider_ui(ui, &mut wide, number);
+            edit.changed &= wide as u32 != **n;
+            **n = wide as u32;
+            return edit;
+        }
+        Slot::Vector(v, range) | Slot::Scale(v, range) => {
+            return vector_ui(ui, row, (row.key, 0), v, *range);
         }
         Slot::Pair(pair, range) => pair_ui(ui, row, pair, *range),
         Slot::Flag(on) => {
@@ -143,7 +196,6 @@ fn value_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> bool {
             let response = ui.add(checkbox).accessible_name(row.key);
             explained(response, row, None).changed()
         }
-        Slot::Vector(v, range) | Slot::Scale(v, range) => vector_ui(ui, row, row.key, v, *range),
         Slot::Choice(choice) => choice_ui(ui, row, *choice),
         Slot::Material(index) => material_ui(ui, row, index),
         Slot::Mesh { file, .. } => {
@@ -159,7 +211,8 @@ fn value_ui(ui: &mut Ui, row: &Row<'_>, slot: &mut Slot<'_>) -> bool {
             false
         }
         Slot::Points(..) | Slot::Loops(..) | Slot::Image(_) => false,
-    }
+    };
+    Edit { changed, ..Edit::default() }
 }
 
 /// Whether a geometric number has a natural span for a slider.
@@ -168,74 +221,6 @@ fn has_slider(key: &str) -> bool {
         key,
         "ior" | "fov_degrees" | "shutter" | "falloff" | "angle_degrees" | "edge" | "turbulence"
     )
-}
-
-/// A slider with a number field. Typed numbers may leave the slider's span, not the range.
-fn number_ui(ui: &mut Ui, row: &Row<'_>, name: &str, x: &mut f64, range: Range) -> bool {
-    slider_ui(ui, row, name, x, range) | field_ui(ui, row, name, x, range)
-}
-
-fn slider_ui(ui: &mut Ui, row: &Row<'_>, name: &str, x: &mut f64, range: Range) -> bool {
-    let hints::Scale { span, logarithmic } = hints::scale(row.key, range, *x);
-    let space = ui.available_width() - FIELD - TOGGLE - 2.0 * ui.spacing().item_spacing.x;
-    ui.spacing_mut().slider_width = space.max(40.0);
-    let (low, high) = (*span.start(), *span.end());
-    let slider = Slider::new(x, span).show_value(false).clamping(SliderClamping::Never);
-    let slider = slider.logarithmic(logarithmic).smallest_positive(1.0).trailing_fill(true);
-    let response = ui.add(slider).accessible_name(name);
-    if !logarithmic {
-        thresholds_ui(ui, &response, row.cost, low, high);
-    }
-    let changed = response.changed();
-    explained(response, row, Some(range));
-    if changed {
-        *x = range.clamp(*x);
-    }
-    changed
-}
-
-/// Ticks on the slider where an edit stops being instant.
-fn thresholds_ui(ui: &Ui, slider: &Response, cost: Option<Cost>, low: f64, high: f64) {
-    use Cost::{InstantDownTo, InstantUpTo, InstantWithin, RereadBelow};
-    let limits = match cost {
-        Some(InstantUpTo(x, _) | InstantDownTo(x, _) | RereadBelow(x, _)) => vec![x],
-        Some(InstantWithin(ends, _)) => ends.to_vec(),
-        _ => return,
-    };
-    for x in limits.into_iter().filter(|x| (low..=high).contains(x) && high > low) {
-        let rect = slider.rect.shrink2(vec2(slider.rect.height() / 2.5, 0.0));
-        let at = rect.left() + rect.width() * ((x - low) / (high - low)) as f32;
-        let stroke = Stroke::new(1.5, Color32::from_rgb(200, 140, 30));
-        // Below the rail, so that the handle does not hide it.
-        let line = [pos2(at, rect.center().y + 4.0), pos2(at, rect.bottom())];
-        ui.painter().line_segment(line, stroke);
-    }
-}
-
-/// A number field: drag it, or click and type.
-fn field_ui(ui: &mut Ui, row: &Row<'_>, name: &str, x: &mut f64, range: Range) -> bool {
-    let speed = 0.005 * x.abs().max(0.2);
-    let before = *x;
-    let field = DragValue::new(x)
-        .speed(speed)
-        .update_while_editing(false)
-        .custom_parser(typed)
-        .custom_formatter(|x, _| shown(x));
-    let response = ui.add_sized(vec2(FIELD, ui.spacing().interact_size.y), field);
-    // A field that is left without an edit keeps every bit, also those that it does not show.
-    let changed = response.changed() && shown(before) != shown(*x);
-    *x = if changed { range.clamp(*x) } else { before };
-    explained(response.accessible_name(format!("{name} value")), row, Some(range));
-    changed
-}
-
-fn whole_ui(ui: &mut Ui, row: &Row<'_>, x: &mut f64, range: Range) -> bool {
-    let mut edited = *x;
-    let changed = number_ui(ui, row, row.key, &mut edited, range);
-    edited = range.clamp(edited.round());
-    let differs = changed && edited != *x;
-    *x = edited;
-    differs
 }
 
 fn pair_ui(ui: &mut Ui, row: &Row<'_>, pair: &mut [u32; 2], range: Range) -> bool {
@@ -252,105 +237,22 @@ fn pair_ui(ui: &mut Ui, row: &Row<'_>, pair: &mut [u32; 2], range: Range) -> boo
     changed
 }
 
-fn vector_ui(ui: &mut Ui, row: &Row<'_>, name: &str, v: &mut DVec3, range: Range) -> bool {
-    let mut changed = false;
-    for (x, axis) in [(&mut v.x, "x"), (&mut v.y, "y"), (&mut v.z, "z")] {
-        changed |= field_ui(ui, row, &format!("{name} {axis}"), x, range);
+/// The numbers of a point or direction, of which the first is at this place of the row's value.
+pub(super) fn vector_ui(
+    ui: &mut Ui,
+    row: &Row<'_>,
+    (name, place): (&str, usize),
+    v: &mut DVec3,
+    range: Range,
+) -> Edit {
+    let mut edit = Edit::default();
+    for (i, (x, axis)) in
+        [(&mut v.x, "x"), (&mut v.y, "y"), (&mut v.z, "z")].into_iter().enumerate()
+    {
+        let number = row.number(format!("{name} {axis}"), place + i, range, Precision::Double);
+        edit.join(number.field_ui(ui, x, FIELD));
     }
-    changed
-}
-
-/// A grey coefficient has one slider; a coloured one has three, in rows of their own.
-fn coefficient_ui(ui: &mut Ui, row: &Row<'_>, color: &mut Rgb, range: Range) -> bool {
-    let Rgb([r, g, b]) = *color;
-    if r != g || g != b {
-        let mean = (f64::from(r) + f64::from(g) + f64::from(b)) / 3.0;
-        let text = format!("r {} · g {} · b {}", shown(r.into()), shown(g.into()), shown(b.into()));
-        let grey = ui.add(Button::new(RichText::new(text).small()).small());
-        let grey = grey.accessible_name(format!("one value for {}", row.key));
-        if grey
-            .on_hover_text("Three different channels; click to give all of them their mean")
-            .clicked()
-        {
-            *color = Rgb::grey(mean as f32);
-            return true;
-        }
-        return false;
-    }
-    let id = channels_id(row);
-    let mut open = ui.data(|data| data.get_temp::<bool>(id)).unwrap_or(false);
-    let mut wide = f64::from(r);
-    let changed = number_ui(ui, row, row.key, &mut wide, range);
-    let toggle = Button::selectable(open, RichText::new("rgb").small()).small();
-    let toggle = ui.add_sized(vec2(TOGGLE, ui.spacing().interact_size.y), toggle);
-    let toggle = toggle.accessible_name(format!("channels of {}", row.key));
-    if toggle.on_hover_text("One slider for each of red, green and blue").clicked() {
-        open = !open;
-        ui.data_mut(|data| data.insert_temp(id, open));
-    }
-    if changed {
-        *color = Rgb::grey(wide as f32);
-    }
-    changed
-}
-
-/// The same wherever in the row it is asked for.
-fn channels_id(row: &Row<'_>) -> Id {
-    Id::unique(("channels", row.path))
-}
-
-/// Whether the three channels have rows of their own.
-fn shows_channels(ui: &Ui, row: &Row<'_>, color: &Rgb) -> bool {
-    let Rgb([r, g, b]) = *color;
-    let opened = ui.data(|data| data.get_temp::<bool>(channels_id(row)));
-    !hints::is_color(row.key) && (r != g || g != b || opened.unwrap_or(false))
-}
-
-fn channels_ui(ui: &mut Ui, row: &Row<'_>, color: &mut Rgb, range: Range) -> bool {
-    let mut changed = false;
-    for (channel, name) in color.0.iter_mut().zip(["red", "green", "blue"]) {
-        let (label, value, _) = columns(ui);
-        let right_to_left = Layout::right_to_left(Align::Center);
-        ui.new_child(UiBuilder::new().max_rect(label).layout(right_to_left)).weak(name);
-        column_ui(ui, value, |ui| {
-            let mut wide = f64::from(*channel);
-            if number_ui(ui, row, &format!("{} {name}", row.key), &mut wide, range) {
-                *channel = wide as f32;
-                changed = true;
-            }
-        });
-    }
-    changed
-}
-
-/// A swatch with a picker, and three numbers in linear light.
-fn color_ui(ui: &mut Ui, row: &Row<'_>, color: &mut Rgb, range: Range) -> bool {
-    let before = *color;
-    let space = ui.spacing().item_spacing.x;
-    let response = ui.color_edit_button_rgb(&mut color.0);
-    let mut changed = response.changed();
-    // The picker gives back what it was given through sRGB bytes: only a real edit counts.
-    if !changed {
-        *color = before;
-    }
-    explained(response.accessible_name(row.key), row, Some(range));
-    let width = ((ui.available_width() - 2.0 * space) / 3.0).max(30.0);
-    for (channel, name) in color.0.iter_mut().zip(["red", "green", "blue"]) {
-        let mut wide = f64::from(*channel);
-        let field = DragValue::new(&mut wide)
-            .speed(0.003)
-            .update_while_editing(false)
-            .custom_parser(typed)
-            .custom_formatter(|x, _| shown(x));
-        let response = ui.add_sized(vec2(width, ui.spacing().interact_size.y), field);
-        let edited = response.changed() && shown(wide) != shown(f64::from(*channel));
-        explained(response.accessible_name(format!("{} {name}", row.key)), row, Some(range));
-        if edited {
-            *channel = range.clamp(wide) as f32;
-            changed = true;
-        }
-    }
-    changed
+    edit
 }
 
 fn choice_ui(ui: &mut Ui, row: &Row<'_>, choice: &mut dyn Choice) -> bool {
@@ -389,115 +291,18 @@ fn image_ui(ui: &mut Ui, row: &Row<'_>, file: &str) -> bool {
     explained(button, row, None).clicked()
 }
 
-/// A polygon's corners, one row each.
-fn points_ui(ui: &mut Ui, row: &Row<'_>, points: &mut [DVec3], outcome: &mut RowOutcome) {
-    let title = format!("{} ({})", row.key, points.len());
-    let header = CollapsingHeader::new(title).id_salt(row.path);
-    let header = header.show(ui, |ui| {
-        badge_ui(ui, row.key, row.cost, BADGE);
-        for (i, point) in points.iter_mut().enumerate() {
-            ui.horizontal(|ui| {
-                let name = format!("{} {i}", row.key);
-                ui.label(i.to_string());
-                outcome.changed |=
-                    vector_ui(ui, row, &name, point, crate::scene::fields::COORDINATE);
-            });
-        }
-    });
-    explained(header.header_response, row, None);
-}
-
-/// The corners of an outline's loops, one row each.
-fn loops_ui(
-    ui: &mut Ui,
-    row: &Row<'_>,
-    loops: &mut [Vec<DVec2>],
-    range: Range,
-    outcome: &mut RowOutcome,
-) {
-    let title = format!("{} ({})", row.key, loops.iter().map(Vec::len).sum::<usize>());
-    let header = CollapsingHeader::new(title).id_salt(row.path);
-    let header = header.show(ui, |ui| {
-        badge_ui(ui, row.key, row.cost, BADGE);
-        for (l, points) in loops.iter_mut().enumerate() {
-            for (i, point) in points.iter_mut().enumerate() {
-                ui.horizontal(|ui| {
-                    ui.label(format!("{l}.{i}"));
-                    for (x, axis) in [(&mut point.x, "x"), (&mut point.y, "y")] {
-                        let name = format!("{} {l}.{i} {axis}", row.key);
-                        outcome.changed |= field_ui(ui, row, &name, x, range);
-                    }
-                });
-            }
-        }
-    });
-    explained(header.header_response, row, None);
-}
-
 /// A tooltip with what the parameter is for, its range, its path and its saved value.
-fn explained(response: Response, row: &Row<'_>, range: Option<Range>) -> Response {
-    response.on_hover_ui(|ui| {
-        ui.label(hints::about(row.table, row.key));
-        if let Some(range) = range {
-            ui.weak(format!("range: {range}"));
-        }
-        ui.weak(row.path);
-        if let Some(saved) = row.saved {
-            ui.weak(format!("saved: {saved}; double-click the name to take it back"));
-        }
-    })
+pub(super) fn explained(response: Response, row: &Row<'_>, range: Option<Range>) -> Response {
+    response.on_hover_ui(|ui| about_ui(ui, row, range))
 }
 
-/// What a typed text means, if it is a number: spaces do not count, a printed minus does.
-pub(super) fn typed(text: &str) -> Option<f64> {
-    let text: String = text.chars().filter(|c| !c.is_whitespace()).collect();
-    text.replace('−', "-").parse().ok().filter(|x: &f64| !x.is_nan())
-}
-
-/// Five significant digits at most, and no more than five after the point.
-fn shown(x: f64) -> String {
-    if x == 0.0 {
-        return "0".into();
+pub(super) fn about_ui(ui: &mut Ui, row: &Row<'_>, range: Option<Range>) {
+    ui.label(hints::about(row.table, row.key));
+    if let Some(range) = range {
+        ui.weak(format!("range: {range}"));
     }
-    let magnitude = x.abs().log10().floor() as i32;
-    if !(-4..9).contains(&magnitude) {
-        return format!("{x:.2e}");
-    }
-    let text = format!("{x:.*}", (4 - magnitude).clamp(0, 5) as usize);
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_numbers_are_taken_for_numbers() {
-        for (text, x) in
-            [("0.5", Some(0.5)), (" −1 000 ", Some(-1000.0)), ("NaN", None), ("1,5", None)]
-        {
-            assert_eq!(typed(text), x, "{text}");
-        }
-    }
-
-    #[test]
-    fn numbers_are_shown_with_five_digits() {
-        for (x, text) in [
-            (0.0, "0"),
-            (0.7, "0.7"),
-            (f64::from(0.7f32), "0.7"),
-            (-5.25, "-5.25"),
-            (1.0 / 3.0, "0.33333"),
-            (123_456.7, "123457"),
-            (1000.0, "1000"),
-            (1.0 / 255.0, "0.00392"),
-            (1e-9, "1.00e-9"),
-            (1e12, "1.00e12"),
-        ] {
-            assert_eq!(shown(x), text);
-        }
+    ui.weak(row.path);
+    if let Some(saved) = row.saved {
+        ui.weak(format!("saved: {saved}; double-click the name to take it back"));
     }
 }

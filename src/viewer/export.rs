@@ -4,7 +4,7 @@ use std::path::Path;
 
 use eframe::egui::{Checkbox, DragValue, Ui};
 
-use super::control::typed;
+use super::number::typed;
 use crate::film::plates::Region;
 use crate::film::write::Format;
 use crate::scene::MAX_SIDE;

@@ -228,6 +228,7 @@ pub(super) fn is_color(key: &str) -> bool {
 }
 
 /// How a slider shows a number.
+#[derive(Clone, Debug)]
 pub(super) struct Scale {
     /// What the slider covers; typed values may lie outside, within the parameter's own range.
     pub(super) span: RangeInclusive<f64>,

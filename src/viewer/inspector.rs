@@ -9,11 +9,14 @@ use super::command::Command;
 use super::control::{BADGE, Row, control_ui};
 use super::kind::kind_ui;
 use super::lists::{Subject, offer_ui};
+use super::number::Edit;
 use super::operands::operands_ui;
 use super::paints::{ImageFor, kinds_ui};
+use super::values::{Defaults, same_name, texts, visit};
 use crate::document::things::{Thing, users};
 use crate::scene::Scene;
 use crate::scene::fields::{self, Need, Visit};
+use crate::scene::path::join;
 use crate::scene::slot::Slot;
 use crate::scene::value::Names;
 use crate::session::cost::Cost;
@@ -72,73 +75,6 @@ impl Selection {
     }
 }
 
-/// Visits what is selected, with the whole path of every key.
-pub(super) fn visit(scene: &mut Scene, selection: Selection, v: &mut dyn Visit) {
-    let optional = Need::Optional;
-    match selection {
-        Selection::Scene => {
-            let Scene { ambient_light, picture, camera, background, trace, .. } = scene;
-            v.group("picture", optional, &mut |v| fields::picture(picture, v));
-            v.group("camera", optional, &mut |v| fields::camera(camera, v));
-            v.group("trace", optional, &mut |v| fields::trace(trace, v));
-            v.group("background", optional, &mut |v| fields::background(background, v));
-            let ambient = Slot::Coefficient(ambient_light, fields::COEFFICIENT);
-            v.leaf("ambient_light", optional, ambient);
-        }
-        Selection::Light(i) => {
-            let light = &mut scene.lights[i];
-            v.group("lights", optional, &mut |v| {
-                v.group(&light.name.clone(), optional, &mut |v| fields::light(light, v));
-            });
-        }
-        Selection::Material(i) => {
-            let material = &mut scene.materials[i];
-            v.group("materials", optional, &mut |v| {
-                v.group(&material.name.clone(), optional, &mut |v| fields::material(material, v));
-            });
-        }
-        Selection::Solid(i) => {
-            let solid = &mut scene.solids[i];
-            v.group("solids", optional, &mut |v| {
-                v.group(&solid.name.clone(), optional, &mut |v| fields::solid(solid, v));
-            });
-        }
-    }
-}
-
-/// The paths of all parameters of a selection.
-pub(super) fn paths(scene: &Scene, selection: Selection) -> Vec<String> {
-    texts(scene, selection).into_iter().map(|(path, _)| path).collect()
-}
-
-/// Path and value as TOML of every parameter of a selection.
-fn texts(scene: &Scene, selection: Selection) -> Vec<(String, String)> {
-    let mut scene = scene.clone();
-    let names = Names::of(&scene);
-    let mut texts = Texts { prefix: String::new(), names: &names, list: Vec::new() };
-    visit(&mut scene, selection, &mut texts);
-    texts.list
-}
-
-struct Texts<'a> {
-    prefix: String,
-    names: &'a Names,
-    list: Vec<(String, String)>,
-}
-
-impl Visit for Texts<'_> {
-    fn leaf(&mut self, key: &'static str, _: Need, slot: Slot<'_>) {
-        self.list.push((crate::scene::path::join(&self.prefix, key), slot.text(self.names)));
-    }
-
-    fn group(&mut self, key: &str, _: Need, body: &mut dyn FnMut(&mut dyn Visit)) {
-        let inner = crate::scene::path::join(&self.prefix, key);
-        let outer = std::mem::replace(&mut self.prefix, inner);
-        body(self);
-        self.prefix = outer;
-    }
-}
-
 /// What the inspector reads besides the scene.
 pub(super) struct Known<'a> {
     /// The scene as opened or saved: what "changed" and "reset" refer to.
@@ -162,6 +98,8 @@ pub(super) struct Outcome {
     pub(super) command: Option<Command>,
     /// An image file is wanted.
     pub(super) pick: Option<ImageFor>,
+    /// What else was done with controls.
+    pub(super) edit: Edit,
 }
 
 /// Shows the controls of a selection, which write into `scene`.
@@ -187,6 +125,7 @@ pub(super) fn inspector_ui(
             operands_ui(ui, scene, i, &mut outcome);
         }
         let names = Names::of(scene);
+        let defaults = Defaults::new(scene, selection);
         let mut controls = Controls {
             ui,
             selection,
@@ -199,6 +138,7 @@ pub(super) fn inspector_ui(
             depth: 0,
             names: &names,
             saved: saved.into_iter().collect(),
+            defaults: &defaults,
             known,
             outcome: &mut outcome,
         };
@@ -295,26 +235,6 @@ fn things_ui(
     });
 }
 
-/// The thing of the same name in another scene; the whole scene if there is none.
-fn same_name(scene: &Scene, other: &Scene, selection: Selection) -> Selection {
-    let found = match selection {
-        Selection::Scene => Some(Selection::Scene),
-        Selection::Light(i) => {
-            let name = &scene.lights[i].name;
-            other.lights.iter().position(|l| l.name == *name).map(Selection::Light)
-        }
-        Selection::Material(i) => {
-            let name = &scene.materials[i].name;
-            other.materials.iter().position(|m| m.name == *name).map(Selection::Material)
-        }
-        Selection::Solid(i) => {
-            let name = &scene.solids[i].name;
-            other.solids.iter().position(|s| s.name == *name).map(Selection::Solid)
-        }
-    };
-    found.unwrap_or(Selection::Scene)
-}
-
 /// Makes a control of every value that it visits.
 struct Controls<'a, 'u> {
     ui: &'u mut Ui,
@@ -327,13 +247,14 @@ struct Controls<'a, 'u> {
     depth: usize,
     names: &'a Names,
     saved: HashMap<String, String>,
+    defaults: &'a Defaults,
     known: &'a Known<'a>,
     outcome: &'a mut Outcome,
 }
 
 impl Visit for Controls<'_, '_> {
     fn leaf(&mut self, key: &'static str, _: Need, mut slot: Slot<'_>) {
-        let path = crate::scene::path::join(&self.prefix, key);
+        let path = join(&self.prefix, key);
         let saved = self.saved.get(&path).map(String::as_str);
         let row = Row {
             key,
@@ -341,10 +262,12 @@ impl Visit for Controls<'_, '_> {
             path: &path,
             names: self.names,
             saved: saved.filter(|s| *s != slot.text(self.names)),
+            default: &|| self.defaults.get(&path),
             cost: self.known.costs.get(&path).copied(),
         };
         let outcome = control_ui(self.ui, &row, &mut slot);
-        self.outcome.changed |= outcome.changed;
+        self.outcome.changed |= outcome.edit.changed;
+        self.outcome.edit.join(outcome.edit);
         if outcome.pick {
             self.outcome.pick = ImageFor::of(&path, self.selection, &self.name);
         }
@@ -356,7 +279,7 @@ impl Visit for Controls<'_, '_> {
     }
 
     fn group(&mut self, key: &str, _: Need, body: &mut dyn FnMut(&mut dyn Visit)) {
-        let inner = crate::scene::path::join(&self.prefix, key);
+        let inner = join(&self.prefix, key);
         let outer = std::mem::replace(&mut self.prefix, inner);
         // `materials` and the material's name are the heading already.
         let section = !fields::LISTS.contains(&outer.split('.').next().unwrap_or_default())

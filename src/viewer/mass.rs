@@ -10,8 +10,8 @@ use eframe::egui::{
 use egui_plot::{HLine, Line, Plot, PlotPoints, Points};
 
 use super::app::App;
-use super::control::typed;
 use super::inspector::Selection;
+use super::number::typed;
 use crate::mass::{Goal, MassError, Measured, Properties, Report, Step, Stuff, Wishes, measure};
 use crate::progress::Progress;
 use crate::scene::Scene;

@@ -3,17 +3,18 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use eframe::egui::{
-    Align, Button, Checkbox, DragValue, Layout, Rect, Response, ScrollArea, Sense, Slider,
-    SliderClamping, Ui, UiBuilder, vec2,
-};
+use eframe::egui::{Align, Button, Checkbox, Layout, Rect, ScrollArea, Sense, Ui, UiBuilder, vec2};
 
 use super::badge::badge_ui;
-use super::control::typed;
+use super::color_field::ColorField;
+use super::hints::Scale;
 use super::inspector::Selection;
-use crate::color::{self, Rgb, blackbody, temperature};
+use super::kelvin::Kelvin;
+use super::number::{Edit, Face, Number, Precision};
+use crate::color::Rgb;
 use crate::scene::fields::COEFFICIENT;
 use crate::scene::path::join;
+use crate::scene::range::Range as Limits;
 use crate::scene::{Light, Scene};
 use crate::session::cost::Cost;
 
@@ -21,8 +22,8 @@ use crate::session::cost::Cost;
 const STOPS: [f64; 2] = [-10.0, 6.0];
 /// What counts as dark: the least strength in stops.
 const DARKEST: f64 = -24.0;
-/// Daylight: where the slider stands for a colour without a temperature.
-const DAYLIGHT: f64 = 6504.0;
+/// The strength of the largest intensity that a scene may hold, in stops.
+const BRIGHTEST: f64 = 20.0;
 /// Least widths of the columns in points: switch, solo, name, stops, their number, colour,
 /// temperature, its number, cost.
 const COLUMNS: [f32; 9] = [22.0, 26.0, 110.0, 120.0, 64.0, 40.0, 120.0, 70.0, 108.0];
@@ -41,11 +42,21 @@ pub(super) struct Mixer {
     visible: Range<usize>,
 }
 
+/// What the mixer reads besides the lights.
+pub(super) struct MixerKnown<'a> {
+    /// Costs by path.
+    pub(super) costs: &'a BTreeMap<String, Cost>,
+    /// The scene as opened or saved.
+    pub(super) saved: &'a Scene,
+}
+
 /// What the person did in the mixer.
 #[derive(Debug, Default)]
 pub(super) struct MixerOutcome {
     /// A light was edited.
     pub(super) changed: bool,
+    /// What else was done with sliders and fields.
+    pub(super) edit: Edit,
     /// What the step is called, if it is more than it seems.
     pub(super) step: Option<String>,
     /// Another selection.
@@ -136,7 +147,7 @@ impl Mixer {
         &mut self,
         ui: &mut Ui,
         lights: &mut [Light],
-        costs: &BTreeMap<String, Cost>,
+        known: &MixerKnown<'_>,
     ) -> MixerOutcome {
         let mut outcome = MixerOutcome::default();
         head_ui(ui, &mut outcome);
@@ -149,7 +160,7 @@ impl Mixer {
         scroll.show_rows(ui, height, count, |ui, range| {
             self.visible = range.clone();
             for i in range {
-                ui.push_id(i, |ui| self.line_ui(ui, lights, i, costs, &mut outcome));
+                ui.push_id(i, |ui| self.line_ui(ui, lights, i, known, &mut outcome));
             }
         });
         outcome
@@ -160,7 +171,7 @@ impl Mixer {
         ui: &mut Ui,
         lights: &mut [Light],
         i: usize,
-        costs: &BTreeMap<String, Cost>,
+        known: &MixerKnown<'_>,
         outcome: &mut MixerOutcome,
     ) {
         let mut columns = Columns::of(ui);
@@ -179,10 +190,13 @@ impl Mixer {
                 outcome.select = Some(Selection::Light(i));
             }
         });
-        outcome.changed |= stops_ui(ui, &mut columns, light);
-        outcome.changed |= columns.next(ui, |ui| swatch_ui(ui, light));
-        outcome.changed |= kelvin_ui(ui, &mut columns, light);
-        let cost = dearest(KEYS.map(|key| costs.get(&path(light, key)).copied()));
+        let saved = known.saved.lights.iter().find(|saved| saved.name == name);
+        let mut edit = stops_ui(ui, &mut columns, light, saved);
+        edit.join(columns.next(ui, |ui| swatch_ui(ui, light, saved)));
+        edit.join(kelvin_ui(ui, &mut columns, light));
+        outcome.changed |= edit.changed;
+        outcome.edit.join(edit);
+        let cost = dearest(KEYS.map(|key| known.costs.get(&path(light, key)).copied()));
         columns.next(ui, |ui| badge_ui(ui, &name, cost, COLUMNS[8]));
     }
 
@@ -270,106 +284,71 @@ impl Columns {
     }
 }
 
-/// Slider and number of the strength; whether it was changed.
-fn stops_ui(ui: &mut Ui, columns: &mut Columns, light: &mut Light) -> bool {
+/// Slider and number of the strength.
+fn stops_ui(ui: &mut Ui, columns: &mut Columns, light: &mut Light, saved: Option<&Light>) -> Edit {
     let present = stops(light.intensity);
     let before = present.unwrap_or(DARKEST);
     let (low, high) = (STOPS[0].min(before), STOPS[1].max(before));
     // A light without light stands at the lower end of the slider.
     let mut wanted = if present.is_some() { before } else { low };
-    let about = |response: Response| {
-        response.on_hover_text(
-            "Strength in stops: +1 doubles the intensity, -1 halves it; the ratio of its channels stays",
-        )
+    let was = saved.filter(|saved| saved.intensity != light.intensity);
+    let number = Number {
+        name: format!("{} stops", light.name),
+        bare: false,
+        range: Limits::closed(DARKEST, BRIGHTEST),
+        precision: Precision::Double,
+        face: Face::Stops(present.is_none().then_some(low)),
+        scale: Scale { span: low..=high, logarithmic: false },
+        saved: was.map(|saved| stops(saved.intensity).unwrap_or(DARKEST)),
+        default: Box::new(|| Some(0.0)),
+        limits: Vec::new(),
+        about: Box::new(|ui| {
+            ui.label(
+                "Strength in stops: +1 doubles the intensity, -1 halves it; the ratio of its \
+                 channels stays",
+            );
+        }),
     };
-    let name = format!("{} stops", light.name);
-    let mut changed = columns.next(ui, |ui| {
-        ui.spacing_mut().slider_width = ui.available_width();
-        let slider = Slider::new(&mut wanted, low..=high).show_value(false);
-        let slider = slider.clamping(SliderClamping::Never).trailing_fill(true);
-        about(ui.add(slider).accessible_name(&name)).changed()
+    let mut edit = columns.next(ui, |ui| {
+        let width = ui.available_width();
+        number.slider_ui(ui, &mut wanted, width)
     });
-    changed |= columns.next(ui, |ui| {
-        let field = DragValue::new(&mut wanted)
-            .speed(0.02)
-            .update_while_editing(false)
-            .custom_parser(typed)
-            .custom_formatter(|x, _| match present {
-                None if x <= before => "dark".into(),
-                _ => format!("{x:+.2}"),
-            });
-        let size = vec2(COLUMNS[4], ui.spacing().interact_size.y);
-        let response = ui.add_sized(size, field).accessible_name(format!("{name} value"));
-        about(response).changed()
-    });
-    // A field that is left without an edit keeps every bit.
-    let edited = changed && format!("{wanted:.2}") != format!("{before:.2}");
-    if edited {
-        light.intensity = with_stops(light.intensity, wanted);
+    edit.join(columns.next(ui, |ui| number.field_ui(ui, &mut wanted, COLUMNS[4])));
+    if edit.changed {
+        // What was saved comes back with all its bits.
+        light.intensity = match was.filter(|_| number.saved == Some(wanted)) {
+            Some(saved) => saved.intensity,
+            None => with_stops(light.intensity, wanted),
+        };
     }
-    edited
+    edit
 }
 
-/// The colour with a picker; whether it was changed.
-fn swatch_ui(ui: &mut Ui, light: &mut Light) -> bool {
-    let before = light.color;
-    let response = ui.color_edit_button_rgb(&mut light.color.0);
-    let changed = response.changed();
-    // The picker gives back what it was given through sRGB bytes: only a real edit counts.
-    if !changed {
-        light.color = before;
-    }
-    let response = response.accessible_name(format!("{} colour", light.name));
-    response.on_hover_text("Colour of the light");
-    changed
-}
-
-/// Slider and number of the temperature; whether it was changed.
-fn kelvin_ui(ui: &mut Ui, columns: &mut Columns, light: &mut Light) -> bool {
-    let present = temperature(light.color);
-    let before = present.unwrap_or(DAYLIGHT);
-    let mut wanted = before;
-    let about = |response: Response| {
-        response.on_hover_text(match present {
-            Some(_) => "Temperature of the glowing body with the nearest colour; gives the light that colour",
-            None => {
-                "No glowing body has this colour; a temperature gives the light another one"
-            }
-        })
+/// The colour with a picker.
+fn swatch_ui(ui: &mut Ui, light: &mut Light, saved: Option<&Light>) -> Edit {
+    let field = ColorField {
+        name: format!("{} colour", light.name),
+        range: COEFFICIENT,
+        saved: saved.map(|saved| saved.color).filter(|color| *color != light.color),
+        default: Box::new(|| Some(Rgb::WHITE)),
+        kelvin: true,
+        about: Box::new(|ui| drop(ui.label("Colour of the light"))),
     };
-    let name = format!("{} kelvin", light.name);
-    let mut changed = columns.next(ui, |ui| {
-        ui.spacing_mut().slider_width = ui.available_width();
-        if present.is_none() {
-            ui.multiply_opacity(0.35);
-        }
-        let slider = Slider::new(&mut wanted, color::KELVINS).show_value(false).logarithmic(true);
-        about(ui.add(slider).accessible_name(&name)).changed()
-    });
-    changed |= columns.next(ui, |ui| {
-        let field = DragValue::new(&mut wanted)
-            .speed(10.0)
-            .range(color::KELVINS)
-            .update_while_editing(false)
-            .custom_parser(|text| typed(text.trim_end_matches(['K', ' '])))
-            .custom_formatter(|x, _| match present {
-                None if x == before => "—".into(),
-                _ => kelvins(x),
-            });
-        let size = vec2(COLUMNS[7], ui.spacing().interact_size.y);
-        let response = ui.add_sized(size, field).accessible_name(format!("{name} value"));
-        about(response).changed()
-    });
-    let edited = changed && kelvins(wanted) != kelvins(before);
-    if edited {
-        light.color = blackbody(wanted.round());
-    }
-    edited
+    field.swatch_ui(ui, &mut light.color)
 }
 
-/// As a temperature is shown.
-fn kelvins(x: f64) -> String {
-    format!("{x:.0} K")
+/// Slider and number of the temperature.
+fn kelvin_ui(ui: &mut Ui, columns: &mut Columns, light: &mut Light) -> Edit {
+    let mut kelvin = Kelvin::of(light.color, format!("{} kelvin", light.name));
+    let mut edit = columns.next(ui, |ui| {
+        let width = ui.available_width();
+        kelvin.slider_ui(ui, width)
+    });
+    edit.join(columns.next(ui, |ui| kelvin.field_ui(ui, COLUMNS[7])));
+    if edit.changed {
+        light.color = kelvin.color();
+    }
+    edit
 }
 
 #[cfg(test)]

@@ -1,8 +1,6 @@
 //! The scene as a list: what is in it, and what is selected.
 
-use eframe::egui::{
-    CollapsingHeader, Color32, Response, Rgba, ScrollArea, Sense, Stroke, Ui, vec2,
-};
+use eframe::egui::{CollapsingHeader, Color32, Response, ScrollArea, Sense, Stroke, Ui, vec2};
 
 use super::command::Command;
 use super::inspector::Selection;
@@ -10,6 +8,7 @@ use super::lists::Subject;
 use super::menu::things_ui;
 use super::rename::{Left, Renaming};
 use crate::color::Rgb;
+use crate::color::notation::bytes;
 use crate::document::things::Thing;
 use crate::scene::{Light, Material, Scene};
 
@@ -179,7 +178,8 @@ pub(super) fn lamp(light: &Light) -> Color32 {
     if light.on { shown(light.color) } else { Color32::TRANSPARENT }
 }
 
-/// Linear light on the screen.
-pub(super) fn shown(Rgb([r, g, b]): Rgb) -> Color32 {
-    Color32::from(Rgba::from_rgb(r.min(1.0), g.min(1.0), b.min(1.0)))
+/// Linear light on the screen, in the bytes that it has in a picture of exposure 0.
+pub(super) fn shown(light: Rgb) -> Color32 {
+    let [r, g, b] = bytes(light);
+    Color32::from_rgb(r, g, b)
 }

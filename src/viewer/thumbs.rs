@@ -47,11 +47,11 @@ impl App {
         {
             return;
         }
+        let Some(frame) = shown.frame.clone() else { return };
         let cache = self.files.folders.cache.clone();
         let mut wanted = vec![thumb_of(&cache, path)];
         self.noted_thumb = Some((path.to_owned(), saved));
         wanted.extend(self.settings.recent.iter().map(|file| thumb_of(&cache, file)));
-        let frame = shown.frame.clone();
         std::thread::spawn(move || keep(&frame, &wanted));
     }
 }
