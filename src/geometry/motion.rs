@@ -142,7 +142,8 @@ impl Moving {
         let pose = self.pose(index, &mut moment);
         let Some(entries) = &mut moment.entries else { return };
         let ray = pose.ray_to_rest(walk.ray);
-        let from = (walk.leaving, pose.slack(walk.ray));
+        let Compiled { first, count, item: _, thin: _, mesh: _ } = *self.solid();
+        let from = (walk.leaving.alone(first, count), pose.slack(walk.ray));
         // Nothing in it moves.
         let resting = RefCell::default();
         let within = Walk::new(&ray, from, &resting);

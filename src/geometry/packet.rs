@@ -3,7 +3,7 @@
 //! The tests here may keep too much but never drop a hit: every rounding, of the stored numbers, of
 //! the ray and of the arithmetic, is covered by a margin per lane. What they keep is decided in f64.
 
-use fearless_simd::{Simd, f32x8, prelude::*};
+use fearless_simd::{Simd, f32x8, prelude::*, u32x8};
 
 use super::compile::Primitives;
 use super::hierarchy::Frame;
@@ -163,6 +163,12 @@ impl SpherePacket {
 }
 
 impl TrianglePacket {
+    /// A bit for every lane that holds a triangle.
+    #[inline(always)]
+    pub(super) fn lanes_of<S: Simd>(&self, simd: S, item: u32) -> u32 {
+        u32x8::from_slice(simd, &self.items).simd_eq(item).to_bitmask() as u32
+    }
+
     /// A bit for every triangle that the beam may meet up to `limit` (Möller and Trumbore's numbers,
     /// undivided).
     #[inline(always)]

@@ -6,6 +6,7 @@ use fearless_simd::{Level, Simd, f32x8, prelude::*};
 
 use glam::DVec3;
 
+use super::compile::Kind;
 use super::hierarchy::{Child, Frame, Node, STACK, Stack, Target};
 use super::motion::Moment;
 use super::packet::{ShapePacket, SpherePacket, TrianglePacket, WIDTH};
@@ -70,6 +71,8 @@ impl<'a> Walk<'a> {
 pub(super) struct Departure {
     /// `u32::MAX` if there is none.
     primitive: u32,
+    /// Among the triangles of the hierarchy that is walked; `u32::MAX` if it is none of them.
+    triangle: u32,
     start: Start,
     /// The triangles of its mesh, as a range of primitives; empty if it is no triangle.
     mesh: (u32, u32),
@@ -236,6 +239,11 @@ impl Geometry {
                 if mask == 0 {
                     return;
                 }
+                // The triangle that is left is met by nearly every ray that leaves it.
+                mask &= !packet.lanes_of(simd, walk.leaving.triangle);
+                if mask == 0 {
+                    return;
+                }
                 let shear = Shear::new(walk.ray);
                 while mask != 0 && !query.is_done() {
                     let lane = mask.trailing_zeros() as usize & (WIDTH - 1);
@@ -268,7 +276,7 @@ impl Geometry {
         if !(t > 0.0 && t <= query.limit()) {
             return;
         }
-        let Departure { primitive: left, mesh, start, closed } = walk.leaving;
+        let Departure { primitive: left, triangle: _, mesh, start, closed } = walk.leaving;
         if primitive >= mesh.0 && primitive < mesh.1 {
             let left_item = item.wrapping_add(left as usize).wrapping_sub(primitive as usize);
             let (pair, inside) = ([left_item, item], start == Start::Inside);
@@ -308,8 +316,13 @@ impl Geometry {
             return Departure::NONE;
         };
         let solid = self.primitives.solid(primitive);
+        let triangle = match solid.item.kind {
+            Kind::Triangle => solid.item.index + (primitive - solid.first),
+            _ => u32::MAX,
+        };
         Departure {
             primitive,
+            triangle,
             start: if inside { Start::Inside } else { Start::Outside },
             mesh: if solid.mesh { (solid.first, solid.first + solid.count) } else { (0, 0) },
             closed: !solid.thin,
@@ -345,8 +358,21 @@ impl Geometry {
 
 impl Departure {
     /// From nowhere.
-    pub(super) const NONE: Departure =
-        Departure { primitive: u32::MAX, start: Start::Elsewhere, mesh: (0, 0), closed: false };
+    pub(super) const NONE: Departure = Departure {
+        primitive: u32::MAX,
+        triangle: u32::MAX,
+        start: Start::Elsewhere,
+        mesh: (0, 0),
+        closed: false,
+    };
+
+    /// The same in a hierarchy of its own, of a single solid whose primitives are `count` from
+    /// `first` on.
+    #[inline(always)]
+    pub(super) fn alone(self, first: u32, count: u32) -> Departure {
+        let triangle = self.primitive.wrapping_sub(first);
+        Departure { triangle: if triangle < count { triangle } else { u32::MAX }, ..self }
+    }
 
     /// How the ray stands to a solid of `count` primitives from `first` on; `turned` if what it
     /// leaves is that solid's complement.
