@@ -3,7 +3,7 @@
 
 use std::hint::black_box;
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::{Simd, dispatch};
 use glam::{DVec3, dvec3};
 use serde_json::{Value, json};
 
@@ -199,7 +199,7 @@ fn closest(geometry: &Geometry, rays: &[Start]) -> Vec<Option<Hit>> {
         }
         hits
     }
-    dispatch!(Level::new(), simd => all(simd, geometry, rays))
+    dispatch!(geometry.level(), simd => all(simd, geometry, rays))
 }
 
 /// How many of the rays something stands in the way of; all solids are taken for opaque.
@@ -217,7 +217,7 @@ fn occluded(geometry: &Geometry, rays: &[(Start, f64)]) -> usize {
         }
         blocked
     }
-    dispatch!(Level::new(), simd => all(simd, geometry, rays))
+    dispatch!(geometry.level(), simd => all(simd, geometry, rays))
 }
 
 /// A point of the unit cube, the next of an even sequence (Roberts 2018, by powers of 1/1.22074…).

@@ -178,7 +178,7 @@ impl<'a> Grower<'a> {
             layout: Layout::new(scene.picture.size),
             samples: scene.trace.samples,
             map: None,
-            level: Level::new(),
+            level: geometry.level(),
         }
     }
 

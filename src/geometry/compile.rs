@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use fearless_simd::Level;
 use glam::DVec3;
 
 use super::closed::Closed;
@@ -114,8 +115,12 @@ pub(super) struct Primitives {
 }
 
 impl Primitives {
-    /// Expands every solid of the scene.
-    pub(super) fn compile(scene: &Scene, progress: &Progress) -> Result<Primitives, Cancelled> {
+    /// Expands every solid of the scene, for rays at a level.
+    pub(super) fn compile(
+        scene: &Scene,
+        level: Level,
+        progress: &Progress,
+    ) -> Result<Primitives, Cancelled> {
         let mut all = Primitives::default();
         let shutter = scene.shutter_time();
         let Parts { plain, made } = Parts::of(scene);
@@ -124,12 +129,12 @@ impl Primitives {
             match (chain, shutter.filter(|_| solid.moves())) {
                 (None, _) => all.add_nothing(solid),
                 (Some(chain), Some(shutter)) if chain.is_single() => {
-                    all.add_moving(solid, shutter, progress)?;
+                    all.add_moving(solid, shutter, level, progress)?;
                 }
                 (Some(chain), _) => all.add(solid, chain.at(0.0), progress)?,
             }
             for made in made {
-                all.add_composite(scene, made, progress)?;
+                all.add_composite(scene, made, level, progress)?;
             }
         }
         Ok(all)
@@ -251,10 +256,11 @@ impl Primitives {
         &mut self,
         scene: &Scene,
         made: (usize, Chain),
+        level: Level,
         progress: &Progress,
     ) -> Result<(), Cancelled> {
         let (first, index) = (self.number(), self.composites.len() as u32);
-        let whole = Composite::new(scene, made, first, progress)?;
+        let whole = Composite::new(scene, made, first, level, progress)?;
         for leaf in &whole.leaves {
             self.solid_of.resize(self.count() + leaf.count() as usize, leaf.solid);
         }
@@ -294,10 +300,11 @@ impl Primitives {
         &mut self,
         solid: &Solid,
         shutter: f64,
+        level: Level,
         progress: &Progress,
     ) -> Result<(), Cancelled> {
         let (first, index) = (self.number(), self.moving.len() as u32);
-        let moving = Moving::new(solid, first, shutter, progress)?;
+        let moving = Moving::new(solid, first, shutter, level, progress)?;
         let Compiled { first: _, count, item: _, thin, mesh } = *moving.solid();
         self.moving.push(moving);
         self.shapes.push(OtherShape { form: Form::Moving(index), primitive: first });

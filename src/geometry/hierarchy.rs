@@ -1,20 +1,22 @@
-//! The hierarchy of boxes, eight wide: its nodes, its space, and how it is built.
+//! The hierarchy of boxes: its space, what is in it, and the scratch of its queries.
 
 use std::cell::RefCell;
 
+use fearless_simd::Level;
 use glam::DVec3;
 
-use super::binary::{Aabb, BinaryNode, BinaryTree};
+use super::binary::{Aabb, BinaryTree};
 use super::compile::{Item, Kind, Primitives};
+use super::lanes;
 use super::motion::Moment;
-use super::packet::{Packets, WIDTH};
 use super::plan::Plan;
 use super::primitive::Form;
 use super::shear::point;
+use super::wide::Wide;
 use crate::progress::{Cancelled, Progress};
 
 /// Entries of a [`Stack`]; a power of two.
-pub(super) const STACK: usize = 512;
+pub(super) const STACK: usize = 1024;
 
 /// Scratch for the queries of one thread, made once: zeroing one per ray costs a third.
 #[derive(Debug)]
@@ -28,7 +30,6 @@ pub struct Stack {
 impl Stack {
     /// Scratch for the queries of `geometry` alone: it remembers where what moves in it was.
     pub fn new(geometry: &super::Geometry) -> Stack {
-        assert!(geometry.hierarchy.stack_needed() <= STACK, "build bounds the depth");
         let moment = RefCell::new(Moment::new(&geometry.primitives, 0.0));
         Stack { moment, ..Stack::default() }
     }
@@ -51,64 +52,6 @@ impl Default for Stack {
     }
 }
 
-/// Eight boxes and what is in them.
-///
-/// # Invariants
-/// Unused places have the box lo = +∞, hi = −∞, which no ray meets because planes are chosen by the
-/// direction's sign and never sorted.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-pub(super) struct Node {
-    /// By axis, then lowest and highest.
-    pub(super) bounds: [[[f32; WIDTH]; 2]; 3],
-    /// What the boxes hold.
-    pub(super) children: [Child; WIDTH],
-}
-
-/// A reference to a node or leaf: two bits of kind above thirty bits of index. `0x4000_0005` is
-/// packet 5 of spheres.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Child(pub(super) u32);
-
-/// What a [`Child`] refers to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Target {
-    /// An index into `Hierarchy::nodes`.
-    Node,
-    /// An index into `Packets::spheres`.
-    Spheres,
-    /// An index into `Packets::triangles`.
-    Triangles,
-    /// An index into `Packets::shapes`.
-    Shapes,
-}
-
-impl Child {
-    const INDEX: u32 = (1 << 30) - 1;
-
-    fn new(target: Target, index: usize) -> Child {
-        assert!(index <= Child::INDEX as usize, "fewer than 2^30 nodes and leaves");
-        Child((target as u32) << 30 | index as u32)
-    }
-
-    /// Which list.
-    #[inline(always)]
-    pub(super) fn target(self) -> Target {
-        match self.0 >> 30 {
-            0 => Target::Node,
-            1 => Target::Spheres,
-            2 => Target::Triangles,
-            _ => Target::Shapes,
-        }
-    }
-
-    /// Which element.
-    #[inline(always)]
-    pub(super) fn index(self) -> usize {
-        (self.0 & Child::INDEX) as usize
-    }
-}
-
 /// The space of the hierarchy: centred on what it holds and scaled by a power of two to coordinates
 /// within −1 … 1, so that f32 boxes stay sharp at any offset and size.
 #[derive(Clone, Copy, Debug)]
@@ -122,18 +65,27 @@ pub(super) struct Frame {
 /// Everything but the planes, ready for rays.
 #[derive(Debug)]
 pub(super) struct Hierarchy {
+    /// At which it is walked.
+    pub(super) level: Level,
     pub(super) frame: Frame,
-    /// The root, if there is anything.
-    pub(super) root: Option<Child>,
-    pub(super) nodes: Vec<Node>,
-    pub(super) packets: Packets,
+    tree: Tree,
     bounds: Option<[DVec3; 2]>,
-    depth: usize,
+}
+
+/// As wide as the vectors of the level.
+#[derive(Debug)]
+enum Tree {
+    Eight(Wide<8>),
+    Sixteen(Wide<16>),
 }
 
 impl Hierarchy {
-    /// Builds the hierarchy over all primitives but the planes.
-    pub(super) fn build(all: &Primitives, progress: &Progress) -> Result<Hierarchy, Cancelled> {
+    /// Builds the hierarchy over all primitives but the planes, for rays at a level.
+    pub(super) fn build(
+        all: &Primitives,
+        level: Level,
+        progress: &Progress,
+    ) -> Result<Hierarchy, Cancelled> {
         let items = items(all);
         let (frame, bounds) = Frame::around(all, &items);
         let mut boxes = Vec::with_capacity(items.len());
@@ -141,24 +93,32 @@ impl Hierarchy {
             progress.check()?;
             boxes.extend(chunk.iter().map(|item| frame.local_box(all, *item)));
         }
-        let tree = BinaryTree::build(&boxes, progress)?;
-        let plan = Plan::new(&tree, &items, progress)?;
-        let mut hierarchy = Hierarchy {
-            frame,
-            root: None,
-            nodes: Vec::new(),
-            packets: Packets::default(),
-            bounds,
-            depth: 0,
+        let binary = BinaryTree::build(&boxes, progress)?;
+        let of = (&frame, all);
+        let tree = if lanes::has_sixteen(level) {
+            Tree::Sixteen(Wide::build(&Plan::new(&binary, &items, progress)?, of, progress)?)
+        } else {
+            Tree::Eight(Wide::build(&Plan::new(&binary, &items, progress)?, of, progress)?)
         };
-        hierarchy.emit(&plan, all, progress)?;
-        assert!(hierarchy.stack_needed() <= STACK, "the binary tree's depth is bounded");
-        Ok(hierarchy)
+        Ok(Hierarchy { level, frame, tree, bounds })
     }
 
-    /// The most entries that a ray can have waiting.
-    pub(super) fn stack_needed(&self) -> usize {
-        self.depth * (WIDTH - 1) + WIDTH
+    /// The tree, for a level with vectors of eight or less.
+    #[inline(always)]
+    pub(super) fn eight(&self) -> &Wide<8> {
+        match &self.tree {
+            Tree::Eight(wide) => wide,
+            Tree::Sixteen(_) => wrong_level(),
+        }
+    }
+
+    /// The tree, for a level with vectors of sixteen.
+    #[inline(always)]
+    pub(super) fn sixteen(&self) -> &Wide<16> {
+        match &self.tree {
+            Tree::Sixteen(wide) => wide,
+            Tree::Eight(_) => wrong_level(),
+        }
     }
 
     /// World bounds of what it holds.
@@ -168,61 +128,16 @@ impl Hierarchy {
 
     /// Memory held, in bytes.
     pub(super) fn bytes(&self) -> usize {
-        size_of_val(&*self.nodes) + self.packets.bytes()
+        match &self.tree {
+            Tree::Eight(wide) => wide.bytes(),
+            Tree::Sixteen(wide) => wide.bytes(),
+        }
     }
+}
 
-    /// Writes the planned nodes and leaves, depth first.
-    fn emit(
-        &mut self,
-        plan: &Plan,
-        all: &Primitives,
-        progress: &Progress,
-    ) -> Result<(), Cancelled> {
-        if plan.tree.nodes.is_empty() {
-            return Ok(());
-        }
-        // Binary node, depth, and the place of the reference to it.
-        let mut open = vec![(0, 0, None)];
-        while let Some((binary, depth, place)) = open.pop() {
-            progress.check()?;
-            let child = match plan.leaf_kind(binary) {
-                Some(kind) => self.emit_leaf(kind, plan.items_under(binary), all),
-                None => {
-                    let child = Child::new(Target::Node, self.nodes.len());
-                    let parts = plan.children(binary);
-                    self.nodes.push(Node::around(&parts, &plan.tree.nodes));
-                    let parts = parts.iter().enumerate().rev();
-                    open.extend(parts.map(|(k, b)| (*b, depth + 1, Some((child.index(), k)))));
-                    child
-                }
-            };
-            self.depth = self.depth.max(depth);
-            match place {
-                Some((node, k)) => self.nodes[node].children[k] = child,
-                None => self.root = Some(child),
-            }
-        }
-        Ok(())
-    }
-
-    fn emit_leaf(
-        &mut self,
-        kind: Kind,
-        items: impl Iterator<Item = u32>,
-        all: &Primitives,
-    ) -> Child {
-        let (frame, packets) = (&self.frame, &mut self.packets);
-        match kind {
-            Kind::Sphere => Child::new(Target::Spheres, packets.add_spheres(frame, all, items)),
-            Kind::Triangle => {
-                Child::new(Target::Triangles, packets.add_triangles(frame, all, items))
-            }
-            Kind::Shape => Child::new(Target::Shapes, packets.add_shapes(items)),
-            Kind::Plane | Kind::Moving | Kind::Leaf => {
-                unreachable!("none is an item of the hierarchy")
-            }
-        }
-    }
+#[cold]
+fn wrong_level() -> ! {
+    panic!("rays are asked about at the level of their geometry, which its hierarchy is built for")
 }
 
 /// All items of the hierarchy, kind by kind.
@@ -232,22 +147,6 @@ fn items(all: &Primitives) -> Vec<Item> {
         .chain(run(Kind::Triangle, all.triangles.len()))
         .chain(run(Kind::Shape, all.shapes.len()))
         .collect()
-}
-
-impl Node {
-    /// A node around the binary nodes `parts`, at most eight; the children are not yet known.
-    fn around(parts: &[u32], binary: &[BinaryNode]) -> Node {
-        let empty = [[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]];
-        let mut node = Node { bounds: [empty; 3], children: [Child(0); WIDTH] };
-        for (k, part) in parts.iter().enumerate() {
-            let Aabb { lo, hi } = binary[*part as usize].bounds;
-            for axis in 0..3 {
-                node.bounds[axis][0][k] = lo[axis];
-                node.bounds[axis][1][k] = hi[axis];
-            }
-        }
-        node
-    }
 }
 
 impl Frame {

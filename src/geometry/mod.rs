@@ -16,6 +16,7 @@ mod frustum;
 mod generate;
 mod hierarchy;
 mod interaction;
+mod lanes;
 mod motion;
 mod noise;
 mod packet;
@@ -51,10 +52,11 @@ mod tone;
 mod torus;
 mod traverse;
 mod uv;
+mod wide;
 
 use std::sync::Arc;
 
-use fearless_simd::Simd;
+use fearless_simd::{Level, Simd};
 use glam::DVec3;
 
 use crate::progress::{Cancelled, Progress};
@@ -134,13 +136,27 @@ pub struct Geometry {
 impl Geometry {
     /// Compiles a scene. A cancel is obeyed within 100 ms.
     pub fn build(scene: &Scene, progress: &Progress) -> Result<Geometry, Cancelled> {
-        let primitives = Primitives::compile(scene, progress)?;
-        let hierarchy = Hierarchy::build(&primitives, progress)?;
+        Geometry::build_for(Level::new(), scene, progress)
+    }
+
+    /// The same for rays at another level than the best.
+    pub fn build_for(
+        level: Level,
+        scene: &Scene,
+        progress: &Progress,
+    ) -> Result<Geometry, Cancelled> {
+        let primitives = Primitives::compile(scene, level, progress)?;
+        let hierarchy = Hierarchy::build(&primitives, level, progress)?;
         Ok(Geometry {
             primitives: Arc::new(primitives),
             hierarchy: Arc::new(hierarchy),
             surfaces: Surfaces::of(scene),
         })
+    }
+
+    /// The level at which rays are asked about: code that does is dispatched by it.
+    pub fn level(&self) -> Level {
+        self.hierarchy.level
     }
 
     /// The geometry of a scene with the same solids, of which some may have other materials, and

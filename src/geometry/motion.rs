@@ -92,6 +92,7 @@ impl Moving {
         solid: &Solid,
         first: u32,
         shutter: f64,
+        level: Level,
         progress: &Progress,
     ) -> Result<Moving, Cancelled> {
         let Solid { name: _, shape: _, material: _, placement, motion } = solid;
@@ -99,7 +100,7 @@ impl Moving {
         let resting = Solid { placement: resting, ..solid.clone() };
         let placed = Placed::new(&resting.placement);
         let primitives = Primitives::part(&resting, placed, first, progress)?;
-        let hierarchy = Hierarchy::build(&primitives, progress)?;
+        let hierarchy = Hierarchy::build(&primitives, level, progress)?;
         let bounds = swept(placement, motion, shutter, hierarchy.bounds().unwrap_or_default());
         let (primitives, hierarchy) = (Arc::new(primitives), Arc::new(hierarchy));
         Ok(Moving {

@@ -1,8 +1,7 @@
-//! How the binary tree becomes eight wide.
+//! How the binary tree becomes a wide one.
 
 use super::binary::{BinaryNode, BinaryTree};
 use super::compile::{Item, Kind};
-use super::packet::WIDTH;
 use crate::progress::{Cancelled, Progress};
 
 /// Cost of a node, of a leaf, and of each primitive in it, in one unit. A few tenths more or less
@@ -12,33 +11,33 @@ const NODE_COST: f32 = 1.0;
 const LEAF_COST: f32 = 1.0;
 const PRIMITIVE_COST: f32 = 0.04;
 
-/// How the binary tree is cut into nodes of eight and leaves of up to eight primitives of one kind:
+/// How the binary tree is cut into nodes of `N` and leaves of up to `N` primitives of one kind:
 /// the cheapest way, by dynamic programming (Ylitie, Karras and Laine, HPG 2017, section 3.1).
-pub(super) struct Plan<'a> {
+pub(super) struct Plan<'a, const N: usize> {
     pub(super) tree: &'a BinaryTree,
     items: &'a [Item],
-    /// Per binary node: the cost of covering it with at most 1 … 7 children; `[0]` is unused.
-    costs: Vec<[f32; WIDTH]>,
-    /// Per binary node: of `k` children, how many go left; `[0]`: of the eight of its own node.
+    /// Per binary node: the cost of covering it with at most 1 … N − 1 children; `[0]` is unused.
+    costs: Vec<[f32; N]>,
+    /// Per binary node: of `k` children, how many go left; `[0]`: of the `N` of its own node.
     /// 0: the node itself is one child.
-    left_share: Vec<[u8; WIDTH]>,
+    left_share: Vec<[u8; N]>,
     /// Per binary node: the kind of a leaf made of it, if that is the cheapest single child.
     leaf: Vec<Option<Kind>>,
 }
 
-impl Plan<'_> {
+impl<const N: usize> Plan<'_, N> {
     /// Plans the whole tree.
     pub(super) fn new<'a>(
         tree: &'a BinaryTree,
         items: &'a [Item],
         progress: &Progress,
-    ) -> Result<Plan<'a>, Cancelled> {
+    ) -> Result<Plan<'a, N>, Cancelled> {
         let count = tree.nodes.len();
         let mut plan = Plan {
             tree,
             items,
-            costs: vec![[0.0; WIDTH]; count],
-            left_share: vec![[0; WIDTH]; count],
+            costs: vec![[0.0; N]; count],
+            left_share: vec![[0; N]; count],
             leaf: vec![None; count],
         };
         for binary in (0..count).rev() {
@@ -57,22 +56,22 @@ impl Plan<'_> {
         let leaf_cost = area * (LEAF_COST + PRIMITIVE_COST * count);
         if node.left == 0 {
             self.leaf[binary] = kind;
-            self.costs[binary] = [leaf_cost; WIDTH];
+            self.costs[binary] = [leaf_cost; N];
             return;
         }
         let (left, right) = (node.left as usize, node.left as usize + 1);
-        let spread = |costs: &[[f32; WIDTH]], total: usize| {
-            (1.max(total - (WIDTH - 1).min(total - 1))..total.min(WIDTH))
+        let spread = |costs: &[[f32; N]], total: usize| {
+            (1.max(total - (N - 1).min(total - 1))..total.min(N))
                 .map(|k| (costs[left][k] + costs[right][total - k], k as u8))
                 .fold((f32::INFINITY, 1), |best, new| if new.0 < best.0 { new } else { best })
         };
-        let (below, share) = spread(&self.costs, WIDTH);
+        let (below, share) = spread(&self.costs, N);
         let inner_cost = area * NODE_COST + below;
         self.left_share[binary][0] = share;
         let is_leaf = kind.is_some() && leaf_cost <= inner_cost;
         self.leaf[binary] = kind.filter(|_| is_leaf);
         self.costs[binary][1] = if is_leaf { leaf_cost } else { inner_cost };
-        for total in 2..WIDTH {
+        for total in 2..N {
             let (cost, share) = spread(&self.costs, total);
             let fewer = (self.costs[binary][total - 1], self.left_share[binary][total - 1]);
             // The share of fewer children is kept as it is: `children` may leave places empty.
@@ -82,12 +81,12 @@ impl Plan<'_> {
         }
     }
 
-    /// The kind of up to eight primitives of one kind.
+    /// The kind of up to `N` primitives of one kind.
     fn kind_of(&self, node: &BinaryNode) -> Option<Kind> {
         let order = &self.tree.order[node.begin as usize..node.end as usize];
         let kind = |i: u32| self.items[i as usize].kind;
         let first = kind(order[0]);
-        (order.len() <= WIDTH && order.iter().all(|i| kind(*i) == first)).then_some(first)
+        (order.len() <= N && order.iter().all(|i| kind(*i) == first)).then_some(first)
     }
 
     /// The kind of the leaf that a node becomes as a child, if it becomes one.
@@ -108,8 +107,8 @@ impl Plan<'_> {
             let left = self.tree.nodes[binary as usize].left;
             [(left + 1, total - share as usize), (left, share as usize)]
         };
-        let mut children = Vec::with_capacity(WIDTH);
-        let mut open = Vec::from(halves(binary, self.left_share[binary as usize][0], WIDTH));
+        let mut children = Vec::with_capacity(N);
+        let mut open = Vec::from(halves(binary, self.left_share[binary as usize][0], N));
         while let Some((part, mut total)) = open.pop() {
             while total > 1 && self.left_share[part as usize][total] == 0 {
                 total -= 1;

@@ -1,6 +1,6 @@
 //! The hierarchy against all primitives one by one, on every SIMD level, and the rules of ownership.
 
-use fearless_simd::Level;
+use fearless_simd::{Level, Simd};
 use glam::DVec3;
 
 use super::query::{Closest, Shadow};
@@ -16,8 +16,19 @@ fn knot() -> Mesh {
     generate::knot([2, 3], 0.25, [120, 16], &Progress::default()).unwrap()
 }
 
-fn levels() -> [Level; 2] {
-    [Level::new(), Level::baseline()]
+/// The best level, the least, and one with vectors of eight, if the processor has it.
+fn levels() -> Vec<Level> {
+    let mut levels = vec![Level::new(), Level::baseline()];
+    #[cfg(target_arch = "x86_64")]
+    levels.extend(Level::new().as_avx2().map(|simd| simd.level()));
+    levels
+}
+
+/// The solids, ready for rays at every level.
+fn build_for_all(solids: &[Solid]) -> Vec<Geometry> {
+    let scene = scene(solids.to_vec());
+    let build = |level| Geometry::build_for(level, &scene, &Progress::default()).unwrap();
+    levels().into_iter().map(build).collect()
 }
 
 fn brute_closest(geometry: &Geometry, ray: &Ray, leaving: Option<Leaving>) -> Option<Hit> {
@@ -80,15 +91,16 @@ fn mixed_ray(random: &mut Random, geometry: &Geometry, targets: &[DVec3]) -> Ray
     }
 }
 
-/// The places where the hierarchy and the list of all primitives disagree.
-fn disagreements(geometry: &Geometry, truth: &Geometry, rays: usize, seed: u64) -> usize {
-    let (mut random, targets) = (Random(seed), targets(geometry));
-    let mut stack = Stack::new(geometry);
-    let [lo, hi] = geometry.bounds().unwrap();
+/// The places where the hierarchies and the list of all primitives disagree.
+fn disagreements(geometries: &[Geometry], truth: &Geometry, rays: usize, seed: u64) -> usize {
+    let best = &geometries[0];
+    let (mut random, targets) = (Random(seed), targets(best));
+    let mut stacks: Vec<Stack> = geometries.iter().map(Stack::new).collect();
+    let [lo, hi] = best.bounds().unwrap();
     let mut wrong = 0;
     let mut hits = 0;
     for i in 0..rays {
-        let ray = mixed_ray(&mut random, geometry, &targets);
+        let ray = mixed_ray(&mut random, best, &targets);
         let first = brute_closest(truth, &ray, None);
         let t_max = match first {
             Some(hit) => hit.t * if i % 2 == 0 { 1.0 } else { 1.0 + f64::EPSILON },
@@ -96,21 +108,24 @@ fn disagreements(geometry: &Geometry, truth: &Geometry, rays: usize, seed: u64) 
         };
         let crossed = brute_crossed(truth, &ray, t_max);
         hits += usize::from(first.is_some());
-        for level in levels() {
-            let found = closest(geometry, level, &mut stack, &ray, None);
+        for (geometry, stack) in geometries.iter().zip(&mut stacks) {
+            let level = geometry.level();
+            let found = closest(geometry, level, stack, &ray, None);
             let same = found.map(|h| (h.t.to_bits(), h.primitive))
                 == first.map(|h| (h.t.to_bits(), h.primitive));
             let opaque = vec![false; geometry.materials().len()];
-            let seen = shadow(geometry, level, &mut stack, (&ray, t_max), None, &opaque);
+            let seen = shadow(geometry, level, stack, (&ray, t_max), None, &opaque);
             wrong += usize::from(!same || seen.as_ref() != Ok(&crossed));
         }
         // A bounce from the hit.
         if let Some(hit) = first {
-            let at = truth.interaction(&stack, &ray, hit);
+            let at = truth.interaction(&stacks[0], &ray, hit);
             let (ray, leaving) = truth.spawn(&at, random.direction());
             let next = brute_closest(truth, &ray, Some(leaving));
-            let found = closest(geometry, Level::new(), &mut stack, &ray, Some(leaving));
-            wrong += usize::from(found != next);
+            for (geometry, stack) in geometries.iter().zip(&mut stacks) {
+                let found = closest(geometry, geometry.level(), stack, &ray, Some(leaving));
+                wrong += usize::from(found != next);
+            }
         }
     }
     assert!(hits > rays / 20, "only {hits} of {rays} rays hit");
@@ -183,17 +198,17 @@ fn bvh_is_the_list_bit_for_bit() {
         (moved(mixed(), 1e-3, far * 1e-2), 5_000),
     ];
     for (i, (solids, rays)) in scenes.into_iter().enumerate() {
-        let geometry = build(solids);
-        assert_eq!(disagreements(&geometry, &geometry, rays, i as u64), 0, "scene {i}");
+        let geometries = build_for_all(&solids);
+        assert_eq!(disagreements(&geometries, &geometries[0], rays, i as u64), 0, "scene {i}");
     }
 }
 
 #[test]
 fn bvh_disagreements_are_noticed() {
     let mut solids = flake();
-    let geometry = build(solids.clone());
+    let geometries = build_for_all(&solids);
     solids.push(solid(Shape::Sphere { center: DVec3::X * 0.6, radius: 0.1 }));
-    assert!(disagreements(&geometry, &build(solids), 1000, 1) > 0);
+    assert!(disagreements(&geometries, &build(solids), 1000, 1) > 0);
 }
 
 #[test]

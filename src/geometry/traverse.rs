@@ -2,17 +2,18 @@
 
 use std::cell::RefCell;
 
-use fearless_simd::{Level, Simd, f32x8, prelude::*};
+use fearless_simd::{Level, Simd, prelude::*};
 
 use glam::DVec3;
 
 use super::compile::Kind;
-use super::hierarchy::{Child, Frame, Node, STACK, Stack, Target};
+use super::hierarchy::{Frame, STACK, Stack};
+use super::lanes::{self, Floats, Lanes, Width};
 use super::motion::Moment;
-use super::packet::{ShapePacket, SpherePacket, TrianglePacket, WIDTH};
 use super::primitive::{Form, Roots, Start};
 use super::query::Query;
 use super::shear::Shear;
+use super::wide::{Child, Node, Target, Wide};
 use super::{Geometry, Leaving, Ray};
 
 /// Direction components are kept at least this far from zero: over the few units that a ray has in
@@ -24,17 +25,20 @@ const LEAST_COMPONENT: f64 = 1e-12;
 const PADDING: f64 = 8.0 * (f32::EPSILON as f64 / 2.0);
 
 /// The ray in the hierarchy's frame, in f32, with every lane the same.
-pub(super) struct Beam<S: Simd> {
+pub(super) struct Beam<S: Simd, const N: usize>
+where
+    Lanes<N>: Width,
+{
     /// Moved along the ray to the surroundings of the scene.
-    pub(super) origin: [f32x8<S>; 3],
+    pub(super) origin: [Floats<S, N>; 3],
     /// Unit up to rounding.
-    pub(super) direction: [f32x8<S>; 3],
+    pub(super) direction: [Floats<S, N>; 3],
     /// 1 + the sum of the origin's components: no coordinate met on the way is larger.
-    pub(super) size: f32x8<S>,
-    reciprocal: [f32x8<S>; 3],
+    pub(super) size: Floats<S, N>,
+    reciprocal: [Floats<S, N>; 3],
     /// (origin ± padding) · reciprocal, for the nearer and the farther plane.
-    near: [f32x8<S>; 3],
-    far: [f32x8<S>; 3],
+    near: [Floats<S, N>; 3],
+    far: [Floats<S, N>; 3],
     /// Per axis: which plane of a box is the nearer one.
     nearer: [usize; 3],
     start: f64,
@@ -80,9 +84,12 @@ pub(super) struct Departure {
     closed: bool,
 }
 
-impl<S: Simd> Beam<S> {
+impl<S: Simd, const N: usize> Beam<S, N>
+where
+    Lanes<N>: Width,
+{
     #[inline(always)]
-    fn new(simd: S, frame: &Frame, ray: &Ray) -> Beam<S> {
+    fn new(simd: S, frame: &Frame, ray: &Ray) -> Beam<S, N> {
         let (o, d) = (frame.local(ray.origin), ray.direction);
         // The frame's content is within √3 < 2 of its origin: skip the way to the ball of radius 2.
         let start = (-o.dot(d) - 2.0).max(0.0);
@@ -98,7 +105,7 @@ impl<S: Simd> Beam<S> {
         Beam {
             origin: splat3(simd, moved),
             direction: splat3(simd, d),
-            size: f32x8::splat(simd, (size + o.abs().element_sum() * 1e-9) as f32),
+            size: Floats::<S, N>::splat(simd, (size + o.abs().element_sum() * 1e-9) as f32),
             reciprocal: splat3(simd, r),
             near: splat3(simd, at + margin),
             far: splat3(simd, at - margin),
@@ -118,15 +125,16 @@ impl<S: Simd> Beam<S> {
 
     /// The children of a node that the ray may meet up to `limit`, and how far away each is at least.
     #[inline(always)]
-    fn meet(&self, simd: S, node: &Node, limit: f32x8<S>) -> (u32, f32x8<S>) {
+    fn meet(&self, simd: S, node: &Node<N>, limit: Floats<S, N>) -> (u32, Floats<S, N>) {
         let ([x, y, z], [nx, ny, nz]) = (&node.bounds, self.nearer);
         let ([rx, ry, rz], [ox, oy, oz], [px, py, pz]) = (self.reciprocal, self.near, self.far);
-        let near_x = f32x8::from_slice(simd, &x[nx & 1]) * rx - ox;
-        let near_y = f32x8::from_slice(simd, &y[ny & 1]) * ry - oy;
-        let near_z = f32x8::from_slice(simd, &z[nz & 1]) * rz - oz;
-        let far_x = f32x8::from_slice(simd, &x[!nx & 1]) * rx - px;
-        let far_y = f32x8::from_slice(simd, &y[!ny & 1]) * ry - py;
-        let far_z = f32x8::from_slice(simd, &z[!nz & 1]) * rz - pz;
+        let load = |plane| Floats::<S, N>::from_slice(simd, plane);
+        let near_x = load(&x[nx & 1]).mul_sub(rx, ox);
+        let near_y = load(&y[ny & 1]).mul_sub(ry, oy);
+        let near_z = load(&z[nz & 1]).mul_sub(rz, oz);
+        let far_x = load(&x[!nx & 1]).mul_sub(rx, px);
+        let far_y = load(&y[!ny & 1]).mul_sub(ry, py);
+        let far_z = load(&z[!nz & 1]).mul_sub(rz, pz);
         let near = near_x.max(near_y).max(near_z.max(0.0));
         let far = far_x.min(far_y).min(far_z.min(limit));
         (near.simd_le(far).to_bitmask() as u32, near)
@@ -169,31 +177,49 @@ impl Geometry {
         walk: &Walk<'_>,
         query: &mut Q,
     ) {
-        let Some(root) = self.hierarchy.root else { return };
         if query.is_done() {
             return;
         }
-        let beam = Beam::new(simd, &self.hierarchy.frame, walk.ray);
+        if lanes::are_sixteen(simd) {
+            self.descend_in(simd, self.hierarchy.sixteen(), entries, walk, query);
+        } else {
+            self.descend_in(simd, self.hierarchy.eight(), entries, walk, query);
+        }
+    }
+
+    #[inline(always)]
+    fn descend_in<S: Simd, Q: Query, const N: usize>(
+        &self,
+        simd: S,
+        wide: &Wide<N>,
+        entries: &mut [u64; STACK],
+        walk: &Walk<'_>,
+        query: &mut Q,
+    ) where
+        Lanes<N>: Width,
+    {
+        let Some(root) = wide.root else { return };
+        let beam = Beam::<S, N>::new(simd, &self.hierarchy.frame, walk.ray);
         let mut limit = beam.limit(query.limit());
-        let mut limits = f32x8::splat(simd, limit);
+        let mut limits = Floats::<S, N>::splat(simd, limit);
         let mut top = 0;
         let mut current = root;
         loop {
             if current.target() == Target::Node {
-                let node = &self.hierarchy.nodes[current.index()];
+                let node = &wide.nodes[current.index()];
                 let (mask, near) = beam.meet(simd, node, limits);
                 if mask != 0 {
-                    current = next_child::<S, Q>(node, mask, near, entries, &mut top);
+                    current = next_child::<S, Q, N>(node, mask, near, entries, &mut top);
                     continue;
                 }
             } else {
-                self.leaf(simd, &beam, current, limits, walk, query);
+                self.leaf(simd, (wide, current), &beam, limits, walk, query);
                 if query.is_done() {
                     return;
                 }
                 if !Q::ALL {
                     limit = beam.limit(query.limit());
-                    limits = f32x8::splat(simd, limit);
+                    limits = Floats::<S, N>::splat(simd, limit);
                 }
             }
             loop {
@@ -212,29 +238,31 @@ impl Geometry {
 
     /// Decides the candidates of a leaf.
     #[inline(always)]
-    fn leaf<S: Simd, Q: Query>(
+    fn leaf<S: Simd, Q: Query, const N: usize>(
         &self,
         simd: S,
-        beam: &Beam<S>,
-        leaf: Child,
-        limits: f32x8<S>,
+        (wide, leaf): (&Wide<N>, Child),
+        beam: &Beam<S, N>,
+        limits: Floats<S, N>,
         walk: &Walk<'_>,
         query: &mut Q,
-    ) {
-        let (packets, index) = (&self.hierarchy.packets, leaf.index());
+    ) where
+        Lanes<N>: Width,
+    {
+        let (packets, index) = (&wide.packets, leaf.index());
         match leaf.target() {
             Target::Node => {}
             Target::Spheres => {
-                let packet: &SpherePacket = &packets.spheres[index];
+                let packet = &packets.spheres[index];
                 let mut mask = packet.candidates(simd, beam, limits);
                 while mask != 0 && !query.is_done() {
-                    let lane = mask.trailing_zeros() as usize & (WIDTH - 1);
+                    let lane = mask.trailing_zeros() as usize & (N - 1);
                     mask &= mask - 1;
                     self.sphere(packet.items[lane] as usize, walk, query);
                 }
             }
             Target::Triangles => {
-                let packet: &TrianglePacket = &packets.triangles[index];
+                let packet = &packets.triangles[index];
                 let mut mask = packet.candidates(simd, beam, limits);
                 if mask == 0 {
                     return;
@@ -246,13 +274,13 @@ impl Geometry {
                 }
                 let shear = Shear::new(walk.ray);
                 while mask != 0 && !query.is_done() {
-                    let lane = mask.trailing_zeros() as usize & (WIDTH - 1);
+                    let lane = mask.trailing_zeros() as usize & (N - 1);
                     mask &= mask - 1;
                     self.triangle(packet.items[lane] as usize, &shear, walk, query);
                 }
             }
             Target::Shapes => {
-                let packet: &ShapePacket = &packets.shapes[index];
+                let packet = &packets.shapes[index];
                 for item in packet.items() {
                     self.shape(simd.level(), *item as usize, walk, query);
                 }
@@ -347,12 +375,12 @@ impl Geometry {
             }
         }
         for &index in &all.unbounded {
-            all.composites[index as usize].meet(Level::new(), &walk, query);
+            all.composites[index as usize].meet(self.level(), &walk, query);
         }
         (0..all.spheres.len()).for_each(|i| self.sphere(i, &walk, query));
         let shear = Shear::new(ray);
         (0..all.triangles.len()).for_each(|i| self.triangle(i, &shear, &walk, query));
-        (0..all.shapes.len()).for_each(|i| self.shape(Level::new(), i, &walk, query));
+        (0..all.shapes.len()).for_each(|i| self.shape(self.level(), i, &walk, query));
     }
 }
 
@@ -399,8 +427,11 @@ fn away(component: f64) -> f64 {
 }
 
 #[inline(always)]
-fn splat3<S: Simd>(simd: S, v: DVec3) -> [f32x8<S>; 3] {
-    [f32x8::splat(simd, v.x as f32), f32x8::splat(simd, v.y as f32), f32x8::splat(simd, v.z as f32)]
+fn splat3<S: Simd, const N: usize>(simd: S, v: DVec3) -> [Floats<S, N>; 3]
+where
+    Lanes<N>: Width,
+{
+    v.to_array().map(|x| Floats::<S, N>::splat(simd, x as f32))
 }
 
 /// Offers the crossings with `t > 0`; only the first one unless the query wants all.
@@ -419,19 +450,24 @@ pub(super) fn offer_roots<Q: Query>(Roots { near, far }: Roots, primitive: u32, 
 
 /// Of the children met, the nearest; the others wait on the stack, the nearest on top.
 #[inline(always)]
-fn next_child<S: Simd, Q: Query>(
-    node: &Node,
+fn next_child<S: Simd, Q: Query, const N: usize>(
+    node: &Node<N>,
     mut mask: u32,
-    near: f32x8<S>,
+    near: Floats<S, N>,
     entries: &mut [u64; STACK],
     top: &mut usize,
-) -> Child {
-    let first = mask.trailing_zeros() as usize & (WIDTH - 1);
+) -> Child
+where
+    Lanes<N>: Width,
+{
+    let first = mask.trailing_zeros() as usize & (N - 1);
     mask &= mask - 1;
     if mask == 0 {
         return node.children[first];
     }
-    let near = near.as_array();
+    let mut distances = [0.0; N];
+    near.store_slice(&mut distances);
+    let near = &distances;
     let base = *top;
     let mut best = entry(node, near, first);
     while mask != 0 {
@@ -453,7 +489,7 @@ fn next_child<S: Simd, Q: Query>(
 }
 
 #[inline(always)]
-fn entry(node: &Node, near: &[f32; WIDTH], lane: usize) -> u64 {
-    let lane = lane & (WIDTH - 1);
+fn entry<const N: usize>(node: &Node<N>, near: &[f32; N], lane: usize) -> u64 {
+    let lane = lane & (N - 1);
     u64::from(near[lane].to_bits()) << 32 | u64::from(node.children[lane].0)
 }

@@ -1,5 +1,6 @@
 //! From the tree of operations to gates and leaves.
 
+use fearless_simd::Level;
 use glam::DVec3;
 
 use super::boxes::{Boxes, WIDTH};
@@ -107,6 +108,8 @@ struct Builder<'a> {
     scene: &'a Scene,
     /// Until when things move.
     shutter: Option<f64>,
+    /// At which rays are asked about.
+    level: Level,
     /// The number of the next primitive.
     next: u32,
     gates: Vec<Gate>,
@@ -119,15 +122,16 @@ impl Composite {
         scene: &Scene,
         (solid, chain): (usize, Chain),
         first: u32,
+        level: Level,
         progress: &Progress,
     ) -> Result<Composite, Cancelled> {
         let shutter = scene.shutter_time();
         let mut builder =
-            Builder { scene, shutter, next: first, gates: Vec::new(), leaves: Vec::new() };
+            Builder { scene, shutter, level, next: first, gates: Vec::new(), leaves: Vec::new() };
         let all = operation(&scene.solids[solid].shape, false).is_none_or(|(all, _)| all);
         builder.gates.push(Gate::new(all, NO_PARENT));
         builder.add(0, solid, &chain, false, progress)?;
-        let Builder { scene: _, shutter: _, next, mut gates, mut leaves } = builder;
+        let Builder { scene: _, shutter: _, level: _, next, mut gates, mut leaves } = builder;
         for gate in 0..gates.len() {
             cluster(&mut gates, &mut leaves, gate);
         }
@@ -170,7 +174,8 @@ impl Builder<'_> {
         let Some((all, operands)) = operation(&self.scene.solids[solid].shape, complement) else {
             let made = (self.scene, solid, chain, self.shutter);
             let number = self.leaves.len() as u32;
-            let leaf = Leaf::new(made, (number, self.next), (gate, complement), progress)?;
+            let leaf =
+                Leaf::new(made, (number, self.next), (gate, complement), self.level, progress)?;
             self.next += leaf.count();
             self.gates[gate as usize].children.push(Child::Leaf(number));
             self.leaves.push(leaf);

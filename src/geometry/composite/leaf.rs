@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use fearless_simd::Level;
 use glam::DVec3;
 
 use super::build::Chain;
@@ -71,6 +72,7 @@ impl Leaf {
         (scene, solid, chain, shutter): (&Scene, usize, &Chain, Option<f64>),
         (number, first): (u32, u32),
         (gate, complement): (u32, bool),
+        level: Level,
         progress: &Progress,
     ) -> Result<Leaf, Cancelled> {
         let moves = shutter.filter(|_| chain.moves());
@@ -79,7 +81,7 @@ impl Leaf {
             None => chain.at(0.0),
         };
         let primitives = Primitives::part(&scene.solids[solid], placed, first, progress)?;
-        let hierarchy = Hierarchy::build(&primitives, progress)?;
+        let hierarchy = Hierarchy::build(&primitives, level, progress)?;
         let part = Part::of(&primitives);
         let still = hierarchy.bounds().unwrap_or([DVec3::NEG_INFINITY, DVec3::INFINITY]);
         let bounds = moves.map_or(still, |shutter| swept(chain, shutter, still));
