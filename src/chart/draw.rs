@@ -1,12 +1,12 @@
 //! A chart as a picture: time to the right, error upward, both logarithmic.
 
 use std::fmt::Write;
-use std::sync::Arc;
 
 use resvg::tiny_skia::{Pixmap, Transform};
-use resvg::usvg::{Options, Tree, fontdb};
+use resvg::usvg::Tree;
 
 use super::{Chart, Cost, Deviation, Goal, Point, Sweep, TIME, text_of};
+use crate::film::caption::{drawing_options, escaped};
 
 /// Size of the picture in its own units, and of the PNG in pixels per unit.
 const SIZE: [f64; 2] = [960.0, 680.0];
@@ -97,12 +97,7 @@ pub fn svg(name: &str, chart: &Chart) -> String {
 ///
 /// `None` if there is no memory for it.
 pub fn png(name: &str, chart: &Chart) -> Option<Vec<u8>> {
-    let mut fonts = fontdb::Database::new();
-    fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
-    let family = fonts.faces().next()?.families.first()?.0.clone();
-    fonts.set_sans_serif_family(family);
-    let options = Options { fontdb: Arc::new(fonts), ..Options::default() };
-    let tree = Tree::from_str(&svg(name, chart), &options).ok()?;
+    let tree = Tree::from_str(&svg(name, chart), &drawing_options()?).ok()?;
     let [width, height] = SIZE.map(|side| (side as f32 * PIXELS) as u32);
     let mut pixmap = Pixmap::new(width, height)?;
     resvg::render(&tree, Transform::from_scale(PIXELS, PIXELS), &mut pixmap.as_mut());
@@ -118,10 +113,6 @@ fn colors() -> impl Iterator<Item = String> {
 fn put(out: &mut String, line: std::fmt::Arguments<'_>) {
     let _ = out.write_fmt(line);
     out.push('\n');
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 fn line(out: &mut String, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2], color: &str) {

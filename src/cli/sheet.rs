@@ -34,7 +34,8 @@ pub(super) fn write(session: &mut Session, file: &Path) -> Result<Value, Failure
             "rays": rays,
             "milliseconds": report.milliseconds,
         }));
-        pictures.push(reduced(session.frame(), SMALLER));
+        let said = format!("{} · {class}", name.unwrap_or("no look"));
+        pictures.push((reduced(session.frame(), SMALLER), said));
     }
     write::frame(file, &sheet(&pictures)).map_err(Failure::job)?;
     Ok(Value::Array(costs))

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::history::same_bits;
+use super::looks::follow;
 use super::patch::patch;
 use crate::color::Rgb;
 use crate::scene::mesh::Mesh;
@@ -333,7 +334,9 @@ fn things_are_added_removed_renamed_and_changed_in_kind() {
         for round in 0..60 {
             let mut edited = scene.clone();
             for _ in 0..1 + round % 5 {
+                let before = edited.clone();
                 restructure(&mut edited, &mut random);
+                follow(&before, &mut edited);
             }
             if check::validate(&edited).is_empty() {
                 let new = saved(&text, &scene, &edited);
@@ -372,6 +375,7 @@ fn things_change_places_with_their_comments() {
                     solid.material = [1, 0].get(solid.material).copied().unwrap_or(solid.material);
                 }
             }
+            follow(&scene, &mut edited);
             let new = saved(&text, &scene, &edited);
             let (mut old, mut new) = (comments(&text), comments(&new));
             old.sort_unstable();

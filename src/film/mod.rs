@@ -1,5 +1,6 @@
 //! What the eye gets: a picture in linear floats, its development to 8 bits, and picture files.
 
+pub mod caption;
 pub mod clipping;
 pub mod develop;
 pub mod embedded;

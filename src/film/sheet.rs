@@ -1,6 +1,7 @@
 //! Several pictures in one: smaller copies, row by row.
 
 use super::Frame;
+use super::caption::{LINE, caption};
 use crate::color::{linear_of_srgb, srgb_byte};
 
 /// Pixels between the pictures of a sheet, and around them.
@@ -32,17 +33,22 @@ pub fn reduced(frame: &Frame, divisor: u32) -> Frame {
     small
 }
 
-/// A sheet of pictures of one size, as many to a row as make it about square; the ground is black.
-pub fn sheet(pictures: &[Frame]) -> Frame {
-    let Some(first) = pictures.first() else { return Frame::default() };
+/// A sheet of pictures of one size with a line of text below each, as many to a row as make it about
+/// square; the ground is black. Without memory for a line its picture has none.
+pub fn sheet(pictures: &[(Frame, String)]) -> Frame {
+    let Some((first, _)) = pictures.first() else { return Frame::default() };
     let columns = (pictures.len() as f64).sqrt().ceil() as u32;
     let rows = (pictures.len() as u32).div_ceil(columns);
-    let [width, height] = first.size.map(|side| side + GAP);
+    let [width, height] = [first.size[0] + GAP, first.size[1] + LINE + GAP];
     let mut sheet = Frame::new([columns * width + GAP, rows * height + GAP]);
     sheet.bytes.chunks_exact_mut(4).for_each(|pixel| pixel[3] = 255);
-    for (i, picture) in (0..).zip(pictures) {
+    for (i, (picture, name)) in (0..).zip(pictures) {
         assert_eq!(picture.size, first.size, "pictures of one size");
-        put(&mut sheet, picture, [i % columns * width + GAP, i / columns * height + GAP]);
+        let [left, top] = [i % columns * width + GAP, i / columns * height + GAP];
+        put(&mut sheet, picture, [left, top]);
+        if let Some(line) = caption(name, first.size[0]) {
+            put(&mut sheet, &line, [left, top + first.size[1]]);
+        }
     }
     sheet
 }
@@ -79,15 +85,19 @@ mod tests {
 
     #[test]
     fn every_picture_of_a_sheet_is_whole() {
-        let pictures: Vec<Frame> = (1..=3).map(|i| grey([6, 2], |x, _| i * 10 + x as u8)).collect();
+        let picture = |i| (grey([6, 2], |x, _| i * 10 + x as u8), "WWW".to_owned());
+        let pictures: Vec<_> = (1..=3).map(picture).collect();
         let sheet = sheet(&pictures);
-        assert_eq!(sheet.size, [2 * 10 + 4, 2 * 6 + 4]);
-        for (corner, first) in [([4, 4], 10), ([14, 4], 20), ([4, 10], 30)] {
+        let below = 2 + LINE + 4;
+        assert_eq!(sheet.size, [2 * 10 + 4, 2 * below + 4]);
+        let name = (0..LINE).map(|y| sheet.pixel([8, 6 + y])[0]).max();
+        assert!(name > Some(100), "its name is below it");
+        for (corner, first) in [([4, 4], 10), ([14, 4], 20), ([4, 4 + below], 30)] {
             let [x, y] = corner;
             assert_eq!(sheet.pixel(corner)[0], first);
             assert_eq!(sheet.pixel([x + 5, y + 1])[0], first + 5);
             assert_eq!(sheet.pixel([x + 6, y]), [0, 0, 0, 255]);
         }
-        assert_eq!(sheet.pixel([14, 10]), [0, 0, 0, 255]);
+        assert_eq!(sheet.pixel([14, 4 + below]), [0, 0, 0, 255]);
     }
 }

@@ -99,6 +99,7 @@ fn sections() -> Vec<Section> {
     all.extend(lights());
     all.extend(materials());
     all.extend(solids());
+    all.push(Section::of("## `[looks.NAME]`", "looks.NAME.", &[], &|_| {}).saying(text::LOOKS));
     all
 }
 

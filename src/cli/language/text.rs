@@ -50,6 +50,12 @@ pub(super) fn head() -> String {
 pub(super) const SCENE: &str = "At the beginning of the file, before the first table. `version = 1` \
     must be there.";
 
+pub(super) const LOOKS: &str = "A look is a named set of differences from the scene: a table of lines \
+    `path = value`, by the paths that the window and `--set` use. `look = \"NAME\"` at the beginning of the \
+    file puts one on.\n\n```toml\n[looks.night]\nlights.key.on = false\nmaterials.tiles.diffuse = 0.4\n\
+    background.color = [0.01, 0.02, 0.05]\n```\n\nPutting a look on costs what the edits of its lines \
+    cost together; names of things and their kinds are not changed by it.";
+
 pub(super) const CAMERA: &str = "A view from `eye` to `target`: a perspective, or a parallel view.";
 
 pub(super) const BACKGROUND: &str =

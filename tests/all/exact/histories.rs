@@ -102,8 +102,23 @@ fn largest_tree(scene: &Scene) -> f64 {
     nodes
 }
 
-/// A scene with one parameter changed, and the change in words.
+/// Another look put on, or taken off, and which.
+fn dressed(scene: &Scene, random: &mut Random) -> Option<(Scene, String)> {
+    let names: Vec<_> = scene.looks.list.iter().map(|look| Some(look.name.as_str())).collect();
+    let name = names.iter().copied().chain([None]).nth(random.below(names.len() + 1))?;
+    let dressed = scene.dressed(name).unwrap();
+    let moves = Change::between(scene, &dressed).moves_rays.is_some();
+    (!moves && largest_tree(&dressed) < LARGEST_TREE).then(|| (dressed, format!("look {name:?}")))
+}
+
+/// A scene with one parameter changed, or in another look, and the change in words.
 fn edited(scene: &Scene, random: &mut Random, rays_left: &mut u32) -> (Scene, String) {
+    if !scene.looks.list.is_empty()
+        && random.below(3) == 0
+        && let Some(found) = dressed(scene, random)
+    {
+        return found;
+    }
     let all = parameters(scene);
     loop {
         let parameter = &all[random.below(all.len())];
@@ -224,6 +239,24 @@ fn models() {
         path::set(&mut scene, path, value).unwrap();
     }
     wander_from("models", scene);
+}
+
+/// Looks are put on and taken off, and what is edited meanwhile belongs to the one that is worn.
+#[test]
+fn looks() {
+    let looks = "
+[looks.night]
+lights.key.intensity = 0.1
+materials.mirror.reflect = [0.9, 0.6, 0.3]
+materials.tiles.shininess = 3
+
+[looks.opaque]
+materials.glass.transmit = 0
+trace.depth = 3
+";
+    let text = write::text(&shipped("whitted", [64, 36], 4)) + looks;
+    let scene = rayforest::scene::read::text(&text, Path::new("looks.toml")).unwrap();
+    wander_from("looks", scene);
 }
 
 #[test]

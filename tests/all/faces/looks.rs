@@ -61,5 +61,5 @@ fn a_contact_sheet_tells_what_each_look_costs() {
     assert_eq!(classes, ["none", "reshade", "refold", "retrace"]);
     assert!(ran.messages.contains("2. night: reshade, 0 rays"), "{}", ran.messages);
     let (size, _, _) = decode_png(&folder.path().join("sheet.png")).unwrap();
-    assert_eq!(size, [2 * (16 + 4) + 4, 2 * (9 + 4) + 4]);
+    assert_eq!(size, [2 * (16 + 4) + 4, 2 * (9 + 20 + 4) + 4]);
 }
