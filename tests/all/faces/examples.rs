@@ -6,6 +6,7 @@
 use std::path::{Path, PathBuf};
 
 use rayforest::document::examples::{EXAMPLES, Example};
+use rayforest::film::develop::Development;
 use rayforest::film::write::{Format, picture};
 use rayforest::progress::Progress;
 use rayforest::scene::{Scene, read};
@@ -36,11 +37,11 @@ fn small(example: &Example) -> Scene {
 /// What a scene shows, with alpha or without, as a file, decoded again.
 fn render(scene: Scene, alpha: bool, to: &Path) -> ([u32; 2], Vec<u8>) {
     let options = Options { threads: 2, memory: 1 << 30 };
-    let exposure = scene.picture.exposure;
+    let development = Development::of(&scene.picture);
     let session = Session::open(scene, options, &Progress::default());
-    let mut session = session.unwrap_or_else(|e| panic!("{e}"));
+    let session = session.unwrap_or_else(|e| panic!("{e}"));
     let plates = session.plates(Extras { alpha, ..Extras::default() }).unwrap();
-    picture(to, Format::Png8, &plates, exposure, "").expect("a writable folder");
+    picture(to, Format::Png8, &plates, development, "").expect("a writable folder");
     let (size, _, bytes) = decode_png(to).unwrap();
     (size, bytes)
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Key, Pos2, pos2};
+use eframe::egui::{Key, Pos2, pos2, vec2};
 
 use super::twin::Twin;
 use super::{Desk, SIZE};
@@ -117,7 +117,7 @@ fn the_pictures_of_the_readme() {
     desk.press("i");
     until_still(&desk);
     let picture = twin.rect(Role::Image, "picture");
-    desk.point(picture.lerp_inside([0.45, 0.5].into()));
+    desk.point(picture.lerp_inside(vec2(0.45, 0.5)));
     desk.server.xdotool(&["mousedown", "1", "mouseup", "1"]);
     until_still(&desk);
     desk.point(pos2(picture.center().x, picture.bottom() + 110.0));
