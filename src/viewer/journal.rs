@@ -187,6 +187,36 @@ mod tests {
         );
     }
 
+    /// Names the folder of the log in the process that panics.
+    const FOLDER: &str = "RAYFOREST_TEST_LOG";
+
+    #[test]
+    #[ignore = "panics: another test runs it in a process of its own"]
+    fn a_process_that_panics() {
+        let folder = std::env::var_os(FOLDER).expect("a folder");
+        start(Path::new(&folder));
+        start(Path::new("/nowhere"));
+        log::info!("it begins");
+        panic!("on purpose");
+    }
+
+    #[test]
+    fn a_panic_is_written_with_its_place() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut process = std::process::Command::new(std::env::current_exe().unwrap());
+        process.args(["--ignored", "--exact", "viewer::journal::tests::a_process_that_panics"]);
+        let output = process.env(FOLDER, folder.path()).output().unwrap();
+        assert!(!output.status.success());
+        let told = String::from_utf8_lossy(&output.stderr).into_owned()
+            + &String::from_utf8_lossy(&output.stdout);
+        assert!(told.contains("on purpose"), "it is still told where it was told before: {told}");
+        let lines = last_lines(&file_in(folder.path()), 9);
+        assert!(lines[0].ends_with(" INFO  it begins"), "{lines:?}");
+        let panic = &lines[1];
+        assert!(panic.contains("PANIC thread viewer::journal::tests::a_process"), "{panic}");
+        assert!(panic.contains("journal.rs:") && panic.ends_with(": on purpose"), "{panic}");
+    }
+
     #[test]
     fn a_folder_that_cannot_be_made_is_done_without() {
         let folder = tempfile::tempdir().unwrap();

@@ -150,7 +150,7 @@ impl App {
         }
         self.welcome.load(&ctx);
         let mut closed = false;
-        let panel = Panel::bottom("welcome").resizable(true).default_size(252.0).min_size(120.0);
+        let panel = Panel::bottom("welcome").resizable(true).default_size(276.0).min_size(120.0);
         panel.show(ui, |ui| {
             closed = self.welcome_head_ui(ui, commands);
             commands.extend(self.welcome.cards_ui(ui));

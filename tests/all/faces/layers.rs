@@ -41,6 +41,8 @@ fn the_channels_of_an_exr_are_named_and_add_up() {
     assert!(!all.contains_key("A"));
     let ran = run(folder.path(), &["render", "scene.toml", "-o", "a.png", "--layers"]);
     assert!(ran.code == Some(2) && ran.messages.contains(".exr"), "{}", ran.messages);
+    let ran = run(folder.path(), &["render", "scene.toml", "-o", "a.hdr", "--alpha"]);
+    assert!(ran.code == Some(2) && ran.messages.contains("--alpha"), "{}", ran.messages);
 }
 
 #[test]

@@ -9,6 +9,7 @@ mod command_line;
 mod convert;
 #[cfg(target_os = "linux")]
 mod display;
+mod examples;
 mod killed;
 mod language;
 mod layers;

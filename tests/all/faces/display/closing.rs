@@ -18,6 +18,10 @@ fn without_unsaved_work_it_closes() {
     desk.ask_to_close();
     assert_eq!(desk.until_ended().code(), Some(0));
     assert_eq!(desk.messages(), "");
+    let log = std::fs::read_to_string(desk.file("state/rayforest/rayforest.log")).unwrap();
+    for part in ["INFO  Rayforest ", "the window is drawn by ", "INFO  Rayforest ends"] {
+        assert!(log.contains(part), "`{part}` is missing: {log}");
+    }
 }
 
 #[test]

@@ -139,8 +139,13 @@ impl Desk {
 
     /// Starts the program with `scene.toml` and lets its window fill the screen.
     fn start(&mut self) {
+        self.start_with(&["scene.toml"]);
+    }
+
+    /// Starts the program with a scene or without.
+    fn start_with(&mut self, scene: &[&str]) {
         let mut command = Command::new(env!("CARGO_BIN_EXE_rayforest"));
-        command.args(&self.arguments).arg("scene.toml").current_dir(self.folder.path());
+        command.args(&self.arguments).args(scene).current_dir(self.folder.path());
         // neither a portal nor zenity: no dialog service answers
         for name in ["WAYLAND_DISPLAY", "WAYLAND_SOCKET", "DBUS_SESSION_BUS_ADDRESS"] {
             command.env_remove(name);

@@ -1,10 +1,13 @@
-//! Pictures of the window for the eye, in two sizes, zooms and themes.
+//! Pictures of the window: for the eye, in two sizes, zooms and themes, and for the README.
 
+use std::path::Path;
 use std::time::{Duration, Instant};
 
-use eframe::egui::{Pos2, pos2};
+use eframe::egui::accesskit::Role;
+use eframe::egui::{Key, Pos2, pos2, vec2};
 
-use super::Desk;
+use super::twin::Twin;
+use super::{Desk, SIZE};
 
 /// A screen that is the same for this long has come to rest.
 const REST: Duration = Duration::from_millis(1200);
@@ -80,4 +83,43 @@ fn the_window_in_all_sizes_zooms_and_themes() {
             }
         }
     }
+}
+
+/// Bytes of a picture of the README.
+const MOST_BYTES: u64 = 300_000;
+
+/// Puts what the screen shows into the README's pictures, once it has come to rest.
+fn put(desk: &Desk, name: &str) {
+    until_still(desk);
+    let shot = desk.server.shot().keep(name);
+    let target = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("assets/{name}.png"));
+    std::fs::copy(shot, &target).unwrap();
+    let bytes = std::fs::metadata(&target).unwrap().len();
+    assert!(bytes <= MOST_BYTES, "{name}: {bytes} bytes");
+}
+
+#[test]
+#[ignore = "makes the README's pictures of the window in assets"]
+fn the_pictures_of_the_readme() {
+    let mut desk = Desk::new(SIZE);
+    desk.start_with(&[]);
+    put(&desk, "welcome");
+    desk.kill();
+    let scene = include_str!("../../../../scenes/whitted.toml");
+    std::fs::write(desk.file("scene.toml"), scene).unwrap();
+    desk.start();
+    let mut twin = Twin::new(&desk.file("scene.toml"), None);
+    until_still(&desk);
+    desk.click(twin.rect(Role::Button, "glass").center());
+    desk.point(super::REST);
+    put(&desk, "window");
+    twin.press(Key::I);
+    desk.press("i");
+    until_still(&desk);
+    let picture = twin.rect(Role::Image, "picture");
+    desk.point(picture.lerp_inside(vec2(0.45, 0.5)));
+    desk.server.xdotool(&["mousedown", "1", "mouseup", "1"]);
+    until_still(&desk);
+    desk.point(pos2(picture.center().x, picture.bottom() + 110.0));
+    put(&desk, "pixel");
 }

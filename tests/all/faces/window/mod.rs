@@ -4,6 +4,7 @@ mod camera;
 mod card;
 mod chart;
 mod costs;
+mod diagnostics;
 mod edits;
 mod export;
 mod files;
@@ -24,6 +25,7 @@ mod picture;
 mod pixel;
 mod questions;
 mod recovery;
+mod welcome;
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};

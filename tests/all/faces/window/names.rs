@@ -213,6 +213,32 @@ fn every_control_of_a_pixel_has_a_name_and_a_tooltip() {
 }
 
 #[test]
+fn every_control_of_the_welcome_has_a_name_and_a_tooltip() {
+    let mut window = tall();
+    let before = window.controls();
+    window.menu(&["Help", "Welcome"]);
+    window.harness.run_steps(30);
+    // What moved to make room is not new.
+    let mut others = window.controls();
+    others.retain(|control| before.iter().any(|old| old.name == control.name));
+    window.walk(&others, 18);
+}
+
+#[test]
+fn every_control_of_a_file_that_changed_on_disk_has_a_name_and_a_tooltip() {
+    let mut window = tall();
+    window.click("mirror");
+    window.drag_slider("diffuse", 0.9);
+    let before = window.controls();
+    let changed = SCENE.replace("samples = 2", "samples = 3");
+    std::fs::write(window.file("scene.toml"), changed).unwrap();
+    window.until_button("Load theirs");
+    let mut others = window.controls();
+    others.retain(|control| before.iter().any(|old| old.name == control.name));
+    window.walk(&others, 2);
+}
+
+#[test]
 fn every_item_of_the_menu_of_a_line_has_a_name_and_a_tooltip() {
     let mut window = tall();
     for (line, least) in [("mirror", 4), ("fill", 3)] {
@@ -245,10 +271,11 @@ fn every_control_of_the_colour_picker_has_a_name() {
 #[test]
 fn every_item_of_the_menus_has_a_name_and_a_tooltip() {
     let mut window = tall();
-    let paths: [(&[&str], usize); 5] = [
+    let paths: [(&[&str], usize); 6] = [
         (&["File"], 7),
         (&["Edit"], 8),
         (&["View"], 14),
+        (&["Help"], 3),
         (&["File", "New"], 3),
         (&["File", "Open recent"], 1),
     ];
