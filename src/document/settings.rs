@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use toml::de::{DeTable, DeValue};
 
+use super::arrangement::Arrangement;
 use super::recovery::set_aside;
 use crate::film::write::durably;
 use crate::scene::toml_text::quoted;
@@ -17,6 +18,8 @@ pub struct Settings {
     pub theme: Theme,
     /// Size of all text and widgets, in per cent, 50 … 300.
     pub zoom_percent: u32,
+    /// The panels.
+    pub arrangement: Arrangement,
 }
 
 /// Colours of the window.
@@ -32,13 +35,18 @@ pub enum Theme {
 }
 
 /// The largest number of recent files.
-const MOST_RECENT: usize = 10;
+pub const MOST_RECENT: usize = 10;
 const THEMES: [(&str, Theme); 3] =
     [("system", Theme::System), ("light", Theme::Light), ("dark", Theme::Dark)];
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { recent: Vec::new(), theme: Theme::default(), zoom_percent: 100 }
+        Settings {
+            recent: Vec::new(),
+            theme: Theme::default(),
+            zoom_percent: 100,
+            arrangement: Arrangement::default(),
+        }
     }
 }
 
@@ -86,7 +94,10 @@ impl Settings {
                         settings.recent.push(PathBuf::from(file));
                     }
                 }
-                ("theme" | "zoom_percent" | "recent", _) => return Err(wrong()),
+                ("layout", DeValue::Table(table)) => {
+                    settings.arrangement = Arrangement::parse(table).ok_or_else(wrong)?;
+                }
+                ("theme" | "zoom_percent" | "recent" | "layout", _) => return Err(wrong()),
                 _ => {}
             }
         }
@@ -104,6 +115,7 @@ impl Settings {
             text.push_str(&format!("    {},\n", quoted(path)));
         }
         text.push_str("]\n");
+        text.push_str(&self.arrangement.text());
         if let Some(folder) = file.parent() {
             std::fs::create_dir_all(folder)
                 .map_err(|error| format!("cannot make {}: {error}", folder.display()))?;
@@ -122,6 +134,7 @@ impl Settings {
 
 #[cfg(test)]
 mod tests {
+    use super::super::arrangement::Part;
     use super::*;
 
     #[test]
@@ -134,6 +147,7 @@ mod tests {
         for number in 0..12 {
             settings.remember(&folder.path().join(format!("a \"{number}\" ü.toml")));
         }
+        settings.arrangement.set_size(Part::Outline, 321);
         settings.remember(&folder.path().join("a \"5\" ü.toml"));
         assert_eq!(settings.recent.len(), 10);
         assert!(settings.recent[0].ends_with("a \"5\" ü.toml"));

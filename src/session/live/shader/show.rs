@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::keep::Keeping;
-use super::{Pending, Shader, TICK};
+use super::{Pending, Preview, Shader, TICK};
 use crate::session::Session;
 use crate::session::live::board::{self, Target};
 use crate::session::live::mending::Mending;
@@ -19,13 +19,14 @@ impl Shader {
             (mending.frame(), mending.scene.clone(), mending.regrow.geometry.clone())
         }) {
             self.board.show(
-                Shown { frame, card: None, scene, stage: Stage::Mending, map: None },
+                Shown { frame, card: None, scene, stage: Stage::Mending, map: None, marked: None },
                 geometry,
             );
             self.badges.renew(Stage::Mending, &self.board);
             self.report();
             return self.board.wake();
         }
+        let marked = self.marked();
         let card = if self.preview.is_none() { self.on_card() } else { None };
         let (session, scene, stage) = match (&self.preview, &self.whole) {
             (Some(p), _) => (&p.session, p.scene.clone(), p.stage),
@@ -33,11 +34,12 @@ impl Shader {
             (None, None) => return,
         };
         let shown = Shown {
-            frame: session.shared_frame(),
+            frame: self.preview.as_ref().map_or_else(|| session.shared_frame(), Preview::frame),
             card,
             scene,
             stage,
             map: session.sample_map().filter(|_| stage == Stage::Whole),
+            marked,
         };
         self.board.show(shown, session.shared_geometry());
         self.badges.renew(stage, &self.board);
