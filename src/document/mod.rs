@@ -1,5 +1,6 @@
 //! The work of a person: a scene, its file, its history of edits, and what keeps it from being lost.
 
+pub mod arrangement;
 pub mod examples;
 mod history;
 pub mod looks;

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use toml::de::{DeTable, DeValue};
 
+use super::arrangement::Arrangement;
 use super::recovery::set_aside;
 use crate::film::write::durably;
 use crate::scene::toml_text::{bare_or_quoted, quoted};
@@ -21,6 +22,8 @@ pub struct Settings {
     pub welcome: bool,
     /// Keys of another version of the program and their values, as TOML: kept for it.
     pub others: Vec<(String, String)>,
+    /// The panels.
+    pub arrangement: Arrangement,
 }
 
 /// Colours of the window.
@@ -36,7 +39,7 @@ pub enum Theme {
 }
 
 /// The largest number of recent files.
-const MOST_RECENT: usize = 10;
+pub const MOST_RECENT: usize = 10;
 const THEMES: [(&str, Theme); 3] =
     [("system", Theme::System), ("light", Theme::Light), ("dark", Theme::Dark)];
 
@@ -48,6 +51,7 @@ impl Default for Settings {
             zoom_percent: 100,
             welcome: true,
             others: Vec::new(),
+            arrangement: Arrangement::default(),
         }
     }
 }
@@ -97,7 +101,12 @@ impl Settings {
                     }
                 }
                 ("welcome", DeValue::Boolean(shows)) => settings.welcome = *shows,
-                ("theme" | "zoom_percent" | "recent" | "welcome", _) => return Err(wrong()),
+                ("layout", DeValue::Table(table)) => {
+                    settings.arrangement = Arrangement::parse(table).ok_or_else(wrong)?;
+                }
+                ("theme" | "zoom_percent" | "recent" | "welcome" | "layout", _) => {
+                    return Err(wrong());
+                }
                 (other, value) => settings.others.push((other.to_owned(), inline(value))),
             }
         }
@@ -118,6 +127,7 @@ impl Settings {
         for (key, value) in &self.others {
             text.push_str(&format!("{} = {value}\n", bare_or_quoted(key)));
         }
+        text.push_str(&self.arrangement.text());
         if let Some(folder) = file.parent() {
             std::fs::create_dir_all(folder)
                 .map_err(|error| format!("cannot make {}: {error}", folder.display()))?;
@@ -159,6 +169,7 @@ fn inline(value: &DeValue<'_>) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::arrangement::Part;
     use super::*;
 
     #[test]
@@ -171,6 +182,7 @@ mod tests {
         for number in 0..12 {
             settings.remember(&folder.path().join(format!("a \"{number}\" ü.toml")));
         }
+        settings.arrangement.set_size(Part::Outline, 321);
         settings.remember(&folder.path().join("a \"5\" ü.toml"));
         assert_eq!(settings.recent.len(), 10);
         assert!(settings.recent[0].ends_with("a \"5\" ü.toml"));

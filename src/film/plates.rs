@@ -1,7 +1,7 @@
 //! What a picture file may hold besides the picture: how much of a pixel is covered, layers, a region.
 
 use super::Film;
-use super::layout::Layout;
+use super::layout::{Layout, TILE};
 
 /// A rectangle of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,6 +13,25 @@ pub struct Region {
 }
 
 impl Region {
+    /// What of it lies within a picture of this size, if anything does.
+    pub fn within(self, size: [u32; 2]) -> Option<Region> {
+        let Region { corner, size: own } = self;
+        let side = |i: usize| own[i].min(size[i].saturating_sub(corner[i]));
+        let region = Region { corner, size: [side(0), side(1)] };
+        (region.size[0] > 0 && region.size[1] > 0).then_some(region)
+    }
+
+    /// The tiles of a picture that it touches; it must lie within.
+    pub fn tiles(self, layout: Layout) -> Vec<usize> {
+        let columns = layout.grid()[0];
+        let Region { corner, size } = self;
+        let side = |i: usize| {
+            let last = corner[i] + size[i] - 1;
+            (corner[i] / TILE) as usize..(last / TILE) as usize + 1
+        };
+        side(1).flat_map(|y| side(0).map(move |x| y * columns + x)).collect()
+    }
+
     /// Whether it lies within a picture of this size; if not, what is wrong, and a way out.
     pub fn check(self, [width, height]: [u32; 2]) -> Result<(), String> {
         let Region { corner: [x, y], size: [w, h] } = self;

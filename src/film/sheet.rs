@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn every_picture_of_a_sheet_is_whole() {
-        let picture = |i| (grey([6, 2], |x, _| i * 10 + x as u8), "WWW".to_owned());
+        let picture = |i: u8| (grey([6, 2], |x, _| i * 10 + x as u8), "WWW".to_owned());
         let pictures: Vec<_> = (1..=3).map(picture).collect();
         let sheet = sheet(&pictures);
         let below = 2 + LINE + 4;

@@ -58,6 +58,16 @@ pub struct TransportTile {
     pub frontier: Frontier,
 }
 
+impl TransportTile {
+    /// A tile that no ray was cast for.
+    pub fn black() -> TransportTile {
+        let frontier = Frontier { starts: vec![0; TILE_BLOCKS + 1], ..Frontier::default() };
+        let starts = vec![BlockStart::default(); TILE_BLOCKS + 1];
+        let highlights = Some(Highlights::default());
+        TransportTile { starts, frontier, highlights, ..TransportTile::default() }
+    }
+}
+
 /// Which pixels of a tile a term of the frontier concerns: were it alive, their trees would grow.
 ///
 /// # Invariants

@@ -25,6 +25,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::film::develop::Development;
 use crate::film::layout::TILE_BLOCKS;
+use crate::film::plates::Region;
 use crate::film::{Film, Frame};
 use crate::fold::Names;
 use crate::fold::highlight::HighlightPower;
@@ -142,9 +143,19 @@ impl Session {
 
     /// Traces and draws.
     pub(super) fn begin(start: Start, progress: &Progress) -> Result<Session, TraceError> {
+        Session::begin_with(start, None, progress)
+    }
+
+    /// The same of a part of the picture, if one is named: all else is black and knows of no edit.
+    pub(super) fn begin_with(
+        start: Start,
+        part: Option<Region>,
+        progress: &Progress,
+    ) -> Result<Session, TraceError> {
         let Start { scene, geometry, pool, options, kept, reuse } = start;
         let keep = Keep { what: kept, bytes: options.memory };
-        let traced = trace(&scene, &geometry, &pool, keep, reuse, progress)?;
+        let wanted = (&*scene, part);
+        let traced = trace(wanted, &geometry, &pool, keep, reuse, progress)?;
         let mut session = Session {
             canvas: Canvas::new(scene.picture.size),
             keys: (0..).take(scene.lights.len()).collect(),

@@ -11,6 +11,7 @@ use rayon::ThreadPool;
 use super::pilots::Pilots;
 use crate::film::layout::{Layout, TILE_BLOCKS};
 use crate::film::pixels::PixelSet;
+use crate::film::plates::Region;
 use crate::fold::transport::{Highlights, Transport, TransportTile};
 use crate::fold::trie::Trie;
 use crate::fold::{Folder, Names};
@@ -194,17 +195,36 @@ pub fn trace_only(
 ///
 /// Each tile is folded block by block while its trees are in cache. Beyond the budget trees are
 /// released first, then highlight lists; the picture does not depend on what is kept.
+///
+/// With a region, only the tiles that it touches are traced; all others stay without terms.
 pub fn trace(
-    scene: &Scene,
+    (scene, region): (&Scene, Option<Region>),
     geometry: &Geometry,
     pool: &ThreadPool,
     keep: Keep,
     reuse: Forest,
     progress: &Progress,
 ) -> Result<Traced, TraceError> {
-    let tiles = (0..Layout::new(scene.picture.size).tiles()).collect();
-    progress.begin(Layout::new(scene.picture.size).tiles() as u64);
-    trace_tiles((scene, tiles), geometry, pool, keep, reuse, progress)
+    let layout = Layout::new(scene.picture.size);
+    let all = || (0..layout.tiles()).collect();
+    let tiles: Vec<usize> = region.map_or_else(all, |region| region.tiles(layout));
+    progress.begin(tiles.len() as u64);
+    let traced = trace_tiles((scene, tiles.clone()), geometry, pool, keep, reuse, progress)?;
+    Ok(if region.is_some() { traced.spread(&tiles) } else { traced })
+}
+
+impl Traced {
+    /// Puts what was traced of some tiles into their places in the picture.
+    fn spread(mut self, tiles: &[usize]) -> Traced {
+        let count = self.transport.layout.tiles();
+        let empty = Arc::new(TransportTile::black());
+        let traced = std::mem::replace(&mut self.transport.tiles, vec![empty; count]);
+        let trees = std::mem::replace(&mut self.forest.tiles, vec![None; count]);
+        for (&tile, (transport, trees)) in tiles.iter().zip(traced.into_iter().zip(trees)) {
+            (self.transport.tiles[tile], self.forest.tiles[tile]) = (transport, trees);
+        }
+        self
+    }
 }
 
 /// The same of some tiles of the picture: forest and matrix hold theirs alone, in the order asked

@@ -1,15 +1,14 @@
 //! The window's state and one turn of its loop.
 
 use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use eframe::egui::{
-    CentralPanel, Context, Frame, Id, Margin, Panel, Popup, Ui, Vec2, ViewportCommand,
-};
+use eframe::egui::{CentralPanel, Context, Frame, Margin, Panel, Ui, Vec2, ViewportCommand};
 
 use super::Setup;
 use super::chart::ChartPanel;
 use super::command::Command;
+use super::commands::Run;
 use super::compare::Compare;
 use super::examples::Copied;
 use super::files::Files;
@@ -22,26 +21,25 @@ use super::mixer::{Mixer, MixerKnown};
 use super::navigate::focused;
 use super::notice::Notices;
 use super::on_disk::Changes;
-use super::outline::{Lists, outline_ui};
+use super::outline::{Lists, OutlineOutcome, outline_ui};
+use super::palette::Palette;
+use super::panels::Panels;
 use super::picture::PictureView;
 use super::pixel::PixelPanel;
 use super::rename::Renaming;
 use super::screen::{Screen, wake};
-use super::slider;
 use super::status::status_ui;
 use super::style;
 use super::thumbs::Noted;
 use super::values::paths;
 use super::welcome::Welcome;
+use crate::document::arrangement::Part;
 use crate::document::recovery::Recovery;
 use crate::document::settings::Settings;
 use crate::document::{Document, flaw};
 use crate::film::layout::Layout;
 use crate::scene::{Camera, Scene, path};
 use crate::session::live::{Event, Live, Shown};
-
-/// How long the wheel may rest within one gesture.
-pub(super) const WHEEL_REST: Duration = Duration::from_millis(400);
 
 /// The window: a document, its live session, and what is on the screen.
 pub struct App {
@@ -65,12 +63,19 @@ pub struct App {
     pub(super) picked: Option<usize>,
     /// The name that is being changed, if one is.
     pub(super) renaming: Option<Renaming>,
-    handles: Handles,
+    pub(super) handles: Handles,
     pub(super) mixer: Mixer,
     pub(super) strip: Strip,
     pub(super) compare: Compare,
     /// Whether the picture shows its sample map instead of itself.
-    sample_map: bool,
+    pub(super) sample_map: bool,
+    /// Whether clipped pixels are marked.
+    pub(super) clipping: bool,
+    pub(super) panels: Panels,
+    /// The list of all commands, if it is open.
+    pub(super) palette: Option<Palette>,
+    /// Whether the list of keys is open.
+    pub(super) shows_keys: bool,
     /// Whether the screen shows something else than it should.
     pub(super) is_frame_stale: bool,
     pub(super) chart: ChartPanel,
@@ -78,12 +83,10 @@ pub struct App {
     pub(super) pixel: PixelPanel,
     /// The selection whose costs are watched, and how many solids and materials the scene had.
     watched: Option<Vec<String>>,
-    /// A gesture of the wheel lasts until then.
-    pub(super) wheel_until: Option<Instant>,
-    /// The slider that the gesture belongs to, if it is one of a slider.
-    pub(super) lasting: Option<Id>,
+    /// What lasts over several turns, until then.
+    pub(super) run: Option<(Run, Instant)>,
     /// Size of the picture's view in points.
-    view: Vec2,
+    pub(super) view: Vec2,
     /// The window's title as it was set last.
     pub(super) title: String,
     /// The window that the session wakes.
@@ -121,6 +124,7 @@ impl App {
             }
         };
         let document = Document::built_in();
+        let panels = Panels::new(&settings.arrangement);
         let mut app = App {
             document,
             live,
@@ -142,19 +146,23 @@ impl App {
             strip: Strip::default(),
             compare: Compare::default(),
             sample_map: false,
+            clipping: false,
+            panels,
+            palette: None,
+            shows_keys: false,
             is_frame_stale: false,
             chart: ChartPanel::new(setup.options),
             mass: MassPanel::new(setup.options),
             pixel: PixelPanel::default(),
             watched: None,
-            wheel_until: None,
-            lasting: None,
+            run: None,
             view: Vec2::ZERO,
             title: String::new(),
             waker,
             screen: None,
             is_moving: false,
         };
+        app.take_layout();
         match setup.scene {
             Some(path) => app.open_in_background(ctx, path),
             None => app.begin(ctx),
@@ -185,6 +193,9 @@ impl App {
         changed |= self.apply_outcome(outcome, &mut edited);
         changed |= self.picture_ui(ui, &mut edited);
         if changed {
+            if self.run.take_if(|(run, _)| *run == Run::Exposure).is_some() {
+                self.document.end_gesture();
+            }
             self.commit(edited);
         }
         if let Some(step) = step {
@@ -196,6 +207,8 @@ impl App {
             self.ask_image(&ctx, place);
         }
         self.modals(&ctx);
+        commands.extend(self.palette_ui(&ctx));
+        self.keys_ui(&ctx);
         for command in commands {
             self.run(&ctx, command);
         }
@@ -204,6 +217,7 @@ impl App {
         self.watch_glances();
         self.keep_example();
         self.note_thumb();
+        self.remember_layout(&ctx);
         self.autosave(&ctx);
         self.set_title(&ctx);
     }
@@ -250,7 +264,8 @@ impl App {
                     self.picture.set_card(screen.textures(card), size);
                 }
                 _ => {
-                    if let Some(frame) = &shown.frame {
+                    let marked = shown.marked.as_ref().map(|marked| &marked.frame);
+                    if let Some(frame) = marked.or(shown.frame.as_ref()) {
                         self.picture.set_frame(ui, frame, size);
                     }
                 }
@@ -258,7 +273,7 @@ impl App {
         }
     }
 
-    fn toggle_sample_map(&mut self) {
+    pub(super) fn toggle_sample_map(&mut self) {
         self.sample_map = !self.sample_map;
         let none = self.shown.as_ref().is_some_and(|shown| shown.map.is_none());
         if self.sample_map && none {
@@ -267,65 +282,32 @@ impl App {
         self.is_frame_stale = true;
     }
 
-    /// The commands whose keys were pressed.
-    fn shortcuts(&self, ctx: &Context) -> Vec<Command> {
-        if self.files.is_modal() {
-            return Vec::new();
-        }
-        let focused = ctx.egui_wants_keyboard_input() && !slider::has_keyboard(ctx);
-        let plain = |c: &Command| c.shortcut().is_some_and(|s| s.modifiers.is_none());
-        // A text field has an undo of its own.
-        let typing = ctx.text_edit_focused();
-        // Escape closes an open menu first.
-        let open = Popup::is_any_open(ctx) || self.renaming.is_some();
-        let own = |c: &Command| typing && matches!(c, Command::Undo | Command::Redo);
-        // Escape closes the welcome, too, before it stops anything.
-        let closes = |c: &Command| *c == Command::Stop && self.welcome.is_open();
-        let taken = |c: &Command| ((focused || open) && plain(c)) || own(c) || closes(c);
-        let usable = Command::WITH_SHORTCUTS.into_iter().filter(|c| !taken(c));
-        usable
-            .filter(|command| {
-                let shortcut = command.shortcut();
-                shortcut.is_some_and(|s| ctx.input_mut(|input| input.consume_shortcut(&s)))
-            })
-            .collect()
-    }
-
     /// Menu and status line.
     fn bars(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let before = self.settings.clone();
         let bar = Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(8, 4));
         Panel::top("menu").frame(bar).show(ui, |ui| {
             let state = MenuState {
                 document: &self.document,
-                camera_tool: self.picture.camera_tool,
-                focus_tool: self.picture.focus_tool,
-                handles: !self.handles.hidden,
-                mixer: self.mixer.open,
-                looks: self.strip.open,
-                compare: self.compare.wipe,
-                sample_map: self.sample_map,
-                chart: self.chart.open,
-                mass: self.mass.open,
-                pixel: self.pixel.open,
+                recent: &self.settings.recent,
+                is_on: &|command| self.is_on(command),
+                refusal: &|command| self.refusal(command),
                 subject: self.subject(),
                 keep: self.keep_offer(),
             };
-            commands.extend(menu_ui(ui, &state, &mut self.settings));
+            commands.extend(menu_ui(ui, &state));
         });
-        if self.settings != before {
-            style::apply(ui.ctx(), &self.settings);
-            self.remember_settings();
-        }
         // Ctrl with plus and minus zooms the window by itself: that is remembered too.
         let zoom = (ui.ctx().zoom_factor() * 100.0).round() as u32;
-        if self.settings == before && zoom != self.settings.zoom_percent {
+        if zoom != self.settings.zoom_percent {
             self.settings.zoom_percent = zoom;
             self.remember_settings();
         }
-        Panel::bottom("status").frame(bar).show(ui, |ui| {
+        if !self.panels.status {
+            return;
+        }
+        self.panels.panel(Part::Status).frame(bar).show(ui, |ui| {
             let status = self.live.status();
-            commands.extend(status_ui(ui, &status, self.shown.as_ref()));
+            commands.extend(status_ui(ui, &status, self.shown.as_ref(), self.clipped()));
         });
     }
 
@@ -334,10 +316,12 @@ impl App {
         if !self.mixer.open {
             return None;
         }
-        let panel = Panel::bottom("mixer").resizable(true).default_size(130.0).min_size(60.0);
+        let panel = self.panels.panel(Part::Mixer);
         let costs = self.live.costs();
         let known = MixerKnown { costs: &costs, saved: self.document.saved_scene() };
-        let outcome = panel.show(ui, |ui| self.mixer.ui(ui, &mut edited.lights, &known)).inner;
+        let shown = panel.show(ui, |ui| self.mixer.ui(ui, &mut edited.lights, &known));
+        self.panels.note(Part::Mixer, &shown.response);
+        let outcome = shown.inner;
         self.mixer.open = !outcome.close;
         self.select(outcome.select);
         self.note_edit(ui.ctx(), outcome.edit);
@@ -359,17 +343,26 @@ impl App {
     fn panels(&mut self, ui: &mut Ui, edited: &mut Scene, commands: &mut Vec<Command>) -> Outcome {
         self.selection = self.selection.within(edited);
         self.renaming.take_if(|field| !field.is_in(edited));
-        let outline = Panel::left("outline").default_size(180.0).min_size(120.0);
         let mut lists = Lists { subject: self.subject(), renaming: &mut self.renaming };
-        let listed = outline.show(ui, |ui| outline_ui(ui, edited, &mut lists)).inner;
-        let inspector = Panel::right("inspector").default_size(440.0).min_size(380.0);
-        let inspected = inspector.show(ui, |ui| {
-            let costs = self.live.costs();
-            let saved = self.document.saved_scene();
-            let known = Known { saved, costs: &costs, picked: self.picked };
-            inspector_ui(ui, edited, self.selection, &known)
-        });
-        let mut outcome = inspected.inner;
+        let mut listed = OutlineOutcome::default();
+        if self.panels.outline {
+            let panel = self.panels.panel(Part::Outline);
+            let shown = panel.show(ui, |ui| outline_ui(ui, edited, &mut lists));
+            self.panels.note(Part::Outline, &shown.response);
+            listed = shown.inner;
+        }
+        let mut outcome = Outcome::default();
+        if self.panels.inspector {
+            let panel = self.panels.panel(Part::Inspector);
+            let shown = panel.show(ui, |ui| {
+                let costs = self.live.costs();
+                let saved = self.document.saved_scene();
+                let known = Known { saved, costs: &costs, picked: self.picked };
+                inspector_ui(ui, edited, self.selection, &known)
+            });
+            self.panels.note(Part::Inspector, &shown.response);
+            outcome = shown.inner;
+        }
         outcome.select = outcome.select.or(listed.select);
         commands.extend(listed.command.or(outcome.command));
         if let Some(left) = listed.renamed {
@@ -422,9 +415,11 @@ impl App {
                 false => self.pick(point, edited, ui.input(|i| i.modifiers.alt)),
             }
         }
+        if outcome.cropped {
+            self.set_crop(self.picture.crop.region);
+        }
         if outcome.camera_moved && !ui.input(|i| i.pointer.any_down()) {
-            self.wheel_until = Some(Instant::now() + WHEEL_REST);
-            ui.ctx().request_repaint_after(WHEEL_REST);
+            self.go_on_with(ui.ctx(), Run::Wheel);
         }
         outcome.camera_moved || handled.changed || focused
     }
@@ -477,65 +472,6 @@ impl App {
     pub(super) fn show_scene(&mut self) {
         self.live.want(Arc::new(self.document.scene().clone()));
         self.files.touched();
-    }
-
-    /// A gesture ends when no button is down and the wheel rests.
-    fn end_gesture(&mut self, ctx: &Context) {
-        let wheel = self.wheel_until.is_some_and(|until| Instant::now() < until);
-        if !wheel && !ctx.input(|i| i.pointer.any_down()) {
-            (self.wheel_until, self.lasting) = (None, None);
-            self.document.end_gesture();
-        }
-    }
-
-    /// Does what a command says.
-    pub(super) fn run(&mut self, ctx: &Context, command: Command) {
-        let dots = ctx.pixels_per_point();
-        match command {
-            Command::Undo | Command::Redo => {
-                self.document.end_gesture();
-                let undo = command == Command::Undo;
-                if if undo { self.document.undo() } else { self.document.redo() } {
-                    self.show_scene();
-                }
-            }
-            Command::Fit => self.picture.fit(),
-            Command::ActualSize => self.picture.actual_size(),
-            Command::ZoomIn => self.picture.zoom_by(1.25, self.view, dots),
-            Command::ZoomOut => self.picture.zoom_by(0.8, self.view, dots),
-            Command::CameraTool => self.picture.camera_tool = !self.picture.camera_tool,
-            Command::FocusTool => self.picture.focus_tool = !self.picture.focus_tool,
-            Command::Handles => self.handles.hidden = !self.handles.hidden,
-            Command::Mixer => self.mixer.open = !self.mixer.open,
-            Command::Looks => self.strip.open = !self.strip.open,
-            Command::Snapshot => self.take_snapshot(),
-            Command::Compare => self.compare.wipe = !self.compare.wipe,
-            Command::SampleMap => self.toggle_sample_map(),
-            Command::Chart => self.chart.open = !self.chart.open,
-            Command::Mass => self.mass.open = !self.mass.open,
-            Command::Pixel => self.pixel.open = !self.pixel.open,
-            Command::AddLight
-            | Command::AddMaterial
-            | Command::Duplicate
-            | Command::Rename
-            | Command::Delete
-            | Command::Assign => self.run_on_things(command),
-            Command::Stop => self.live.cancel(),
-            Command::Resume => self.live.resume(),
-            Command::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
-            Command::Welcome => self.open_welcome(ctx),
-            Command::Diagnostics => self.copy_diagnostics(ctx),
-            Command::LogFolder => self.show_log_folder(),
-            Command::New(_)
-            | Command::Example(_)
-            | Command::Open
-            | Command::Import
-            | Command::OpenRecent(_)
-            | Command::Save
-            | Command::SaveAs
-            | Command::Export
-            | Command::Keep => self.run_file_command(ctx, command),
-        }
     }
 
     /// Asks for the costs of what the inspector shows.

@@ -4,12 +4,13 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
-use eframe::egui::{Align, Button, Context, DragValue, Layout, Panel, ProgressBar, Ui};
+use eframe::egui::{Align, Button, Context, DragValue, Layout, ProgressBar, Ui};
 
 use super::app::App;
 use super::chart_plot::{Curve, plot_ui, table_ui};
 use super::number::typed;
 use crate::chart::{Advice, Chart, Goal, News, Wishes, measure, text_of};
+use crate::document::arrangement::Part;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::scene::path::set;
@@ -293,8 +294,10 @@ impl App {
         if !self.chart.open {
             return None;
         }
-        let panel = Panel::bottom("chart").resizable(true).default_size(300.0).min_size(120.0);
-        let outcome = panel.show(ui, |ui| self.chart.ui(ui, edited)).inner;
+        let panel = self.panels.panel(Part::Chart);
+        let shown = panel.show(ui, |ui| self.chart.ui(ui, edited));
+        self.panels.note(Part::Chart, &shown.response);
+        let outcome = shown.inner;
         let ChartOutcome { assignments, step, close } = outcome;
         self.chart.open = !close;
         for (name, value) in assignments {

@@ -1,6 +1,9 @@
-//! Everything the window can be told to do, listed once: menus, shortcuts and tooltips read this list.
+//! Everything the window can be told to do, listed once: menus, shortcuts, palette and tooltips read this list.
 
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+
+use crate::document::arrangement::Part;
+use crate::document::settings::Theme;
 
 /// A command of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,6 +58,34 @@ pub(super) enum Command {
     FocusTool,
     /// Whether the lights have handles in the picture.
     Handles,
+    /// Raises the exposure to the next third of a stop.
+    Brighter,
+    /// Lowers it.
+    Darker,
+    /// Makes it 0.
+    NoExposure,
+    /// Whether clipped pixels are marked.
+    Clipping,
+    /// Whether the next drag in the picture draws the part that is traced first.
+    CropTool,
+    /// Takes that part away.
+    ClearCrop,
+    /// Whether the list of what the scene holds shows.
+    Outline,
+    /// Whether the parameters of what is selected show.
+    Inspector,
+    /// Whether the status line shows.
+    StatusLine,
+    /// All panels as they were at first.
+    ResetLayout,
+    /// Colours of the window.
+    Colours(Theme),
+    /// Text and controls as large as [`TEXT_SIZES`] has it at this index.
+    TextSize(usize),
+    /// A list of all commands to choose from by typing.
+    Palette,
+    /// The list of keys and gestures.
+    Shortcuts,
     /// Whether the light mixer shows.
     Mixer,
     /// Whether looks and snapshots show.
@@ -82,6 +113,15 @@ pub(super) enum Command {
     /// Traces what a stop left out.
     Resume,
 }
+
+/// Sizes of text and controls to choose from: per cent, and what they are called.
+pub(super) const TEXT_SIZES: [(u32, &str); 5] = [
+    (80, "Size of text 80 %"),
+    (100, "Size of text 100 %"),
+    (125, "Size of text 125 %"),
+    (150, "Size of text 150 %"),
+    (200, "Size of text 200 %"),
+];
 
 const CTRL: Modifiers = Modifiers::COMMAND;
 
@@ -114,6 +154,22 @@ impl Command {
             Command::CameraTool => "Move camera",
             Command::FocusTool => "Focus by click",
             Command::Handles => "Light handles",
+            Command::Brighter => "Brighter",
+            Command::Darker => "Darker",
+            Command::NoExposure => "Exposure 0",
+            Command::Clipping => "Mark clipped pixels",
+            Command::CropTool => "Draw a region",
+            Command::ClearCrop => "Clear the region",
+            Command::Outline => "Outline",
+            Command::Inspector => "Inspector",
+            Command::StatusLine => "Status line",
+            Command::ResetLayout => "Reset layout",
+            Command::Colours(Theme::System) => "Colours as the system",
+            Command::Colours(Theme::Light) => "Light colours",
+            Command::Colours(Theme::Dark) => "Dark colours",
+            Command::TextSize(index) => TEXT_SIZES.get(index).map_or("Size of text", |s| s.1),
+            Command::Palette => "All commands…",
+            Command::Shortcuts => "Keys and gestures",
             Command::Mixer => "Light mixer",
             Command::Looks => "Looks",
             Command::Snapshot => "Take a snapshot",
@@ -167,6 +223,27 @@ impl Command {
                  says how much the rest is blurred"
             }
             Command::Handles => "Handles in the picture that move and turn the lights",
+            Command::Brighter => "Raises the exposure to the next third of a stop",
+            Command::Darker => "Lowers the exposure to the next third of a stop",
+            Command::NoExposure => "Shows the light as it is",
+            Command::Clipping => {
+                "Red: a channel is brighter than the screen can show; blue: darker than black. On the \
+                 screen only; the status line says how many"
+            }
+            Command::CropTool => {
+                "Drag a rectangle in the picture: what lies in it is traced first and to its end"
+            }
+            Command::ClearCrop => "Traces the picture evenly again; or double-click the region",
+            Command::Outline => "The list of lights, materials and solids at the left",
+            Command::Inspector => "The parameters of what is selected, at the right",
+            Command::StatusLine => "What runs, and what the last edit cost, below",
+            Command::ResetLayout => {
+                "Every panel as large as it was at first, and shown or hidden so"
+            }
+            Command::Colours(_) => "Colours of the window",
+            Command::TextSize(_) => "Size of text and controls; also Ctrl with + and -",
+            Command::Palette => "Finds a command by some letters of its name",
+            Command::Shortcuts => "What keys and the pointer do",
             Command::Mixer => "All lights side by side: on, solo, stops, colour, temperature",
             Command::Looks => "Looks and snapshots below the picture, to be switched between",
             Command::Snapshot => "Keeps picture and settings until the window closes",
@@ -216,6 +293,15 @@ impl Command {
             Command::Rename => keys(Modifiers::NONE, Key::F2),
             Command::Delete => keys(Modifiers::NONE, Key::Delete),
             Command::Handles => keys(Modifiers::NONE, Key::H),
+            Command::Brighter => keys(Modifiers::NONE, Key::CloseBracket),
+            Command::Darker => keys(Modifiers::NONE, Key::OpenBracket),
+            Command::NoExposure => keys(Modifiers::NONE, Key::Num0),
+            Command::Clipping => keys(Modifiers::NONE, Key::X),
+            Command::CropTool => keys(Modifiers::NONE, Key::R),
+            Command::Outline => keys(Modifiers::NONE, Key::O),
+            Command::Inspector => keys(Modifiers::NONE, Key::N),
+            Command::Palette => keys(CTRL, Key::K),
+            Command::Shortcuts => keys(Modifiers::NONE, Key::Questionmark),
             Command::Mixer => keys(Modifiers::NONE, Key::L),
             Command::Pixel => keys(Modifiers::NONE, Key::I),
             Command::Looks => keys(Modifiers::NONE, Key::K),
@@ -235,36 +321,127 @@ impl Command {
             | Command::Chart
             | Command::Mass
             | Command::SampleMap
+            | Command::ClearCrop
+            | Command::StatusLine
+            | Command::ResetLayout
+            | Command::Colours(_)
+            | Command::TextSize(_)
             | Command::Resume => None,
         }
     }
 
     /// The commands with shortcuts. Those with more modifiers come first, so that Shift-Ctrl-Z is
     /// not taken for Ctrl-Z.
-    pub(super) const WITH_SHORTCUTS: [Command; 23] = [
-        Command::SaveAs,
-        Command::Redo,
+    pub(super) fn with_shortcuts() -> Vec<(Command, KeyboardShortcut)> {
+        let keyed = Command::ALL.into_iter().filter_map(|c| Some((c, c.shortcut()?)));
+        let mut keyed: Vec<_> = keyed.collect();
+        let modifiers = |keys: &KeyboardShortcut| {
+            let Modifiers { alt, ctrl, shift, mac_cmd, command } = keys.modifiers;
+            [alt, ctrl, shift, mac_cmd, command].into_iter().filter(|down| *down).count()
+        };
+        keyed.sort_by_key(|(_, keys)| std::cmp::Reverse(modifiers(keys)));
+        keyed
+    }
+
+    /// The panel that it shows or hides.
+    pub(super) fn part(self) -> Option<Part> {
+        match self {
+            Command::Outline => Some(Part::Outline),
+            Command::Inspector => Some(Part::Inspector),
+            Command::StatusLine => Some(Part::Status),
+            Command::Mixer => Some(Part::Mixer),
+            Command::Looks => Some(Part::Looks),
+            Command::Chart => Some(Part::Chart),
+            Command::Mass => Some(Part::Mass),
+            Command::Pixel => Some(Part::Pixel),
+            _ => None,
+        }
+    }
+
+    /// Every command, in the order of the menus.
+    pub(super) const ALL: [Command; 82] = [
+        Command::New(0),
+        Command::New(1),
+        Command::New(2),
         Command::Open,
+        Command::OpenRecent(0),
+        Command::OpenRecent(1),
+        Command::OpenRecent(2),
+        Command::OpenRecent(3),
+        Command::OpenRecent(4),
+        Command::OpenRecent(5),
+        Command::OpenRecent(6),
+        Command::OpenRecent(7),
+        Command::OpenRecent(8),
+        Command::OpenRecent(9),
+        Command::Example(0),
+        Command::Example(1),
+        Command::Example(2),
+        Command::Example(3),
+        Command::Example(4),
+        Command::Example(5),
+        Command::Example(6),
+        Command::Example(7),
+        Command::Example(8),
+        Command::Example(9),
+        Command::Example(10),
+        Command::Example(11),
+        Command::Example(12),
+        Command::Example(13),
+        Command::Import,
         Command::Save,
+        Command::SaveAs,
         Command::Export,
+        Command::Keep,
         Command::Quit,
         Command::Undo,
+        Command::Redo,
+        Command::AddLight,
+        Command::AddMaterial,
+        Command::Duplicate,
+        Command::Rename,
+        Command::Delete,
+        Command::Assign,
         Command::Fit,
         Command::ActualSize,
         Command::ZoomIn,
         Command::ZoomOut,
         Command::CameraTool,
         Command::FocusTool,
-        Command::Duplicate,
-        Command::Rename,
-        Command::Delete,
         Command::Handles,
-        Command::Mixer,
-        Command::Pixel,
-        Command::Looks,
         Command::Snapshot,
         Command::Compare,
+        Command::Brighter,
+        Command::Darker,
+        Command::NoExposure,
+        Command::Clipping,
+        Command::CropTool,
+        Command::ClearCrop,
+        Command::SampleMap,
+        Command::Outline,
+        Command::Inspector,
+        Command::StatusLine,
+        Command::Mixer,
+        Command::Looks,
+        Command::Chart,
+        Command::Mass,
+        Command::Pixel,
+        Command::ResetLayout,
+        Command::Colours(Theme::System),
+        Command::Colours(Theme::Light),
+        Command::Colours(Theme::Dark),
+        Command::TextSize(0),
+        Command::TextSize(1),
+        Command::TextSize(2),
+        Command::TextSize(3),
+        Command::TextSize(4),
+        Command::Welcome,
+        Command::Palette,
+        Command::Shortcuts,
+        Command::Diagnostics,
+        Command::LogFolder,
         Command::Stop,
+        Command::Resume,
     ];
 
     /// The commands about the selected light or material.
@@ -275,12 +452,60 @@ impl Command {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::document::TEMPLATES;
+    use crate::document::examples::EXAMPLES;
+    use crate::document::settings::MOST_RECENT;
 
     #[test]
     fn no_two_commands_share_a_shortcut() {
-        let keys: Vec<_> = Command::WITH_SHORTCUTS.iter().map(|c| c.shortcut().unwrap()).collect();
+        let keys: Vec<_> = Command::with_shortcuts().into_iter().map(|(_, keys)| keys).collect();
+        assert!(keys.len() > 25);
         for (i, a) in keys.iter().enumerate() {
             assert!(!keys[..i].contains(a), "{a:?}");
         }
+    }
+
+    #[test]
+    fn shortcuts_with_more_modifiers_are_asked_for_first() {
+        let order: Vec<_> = Command::with_shortcuts().into_iter().map(|(c, _)| c).collect();
+        let at = |command| order.iter().position(|c| *c == command).expect("it has keys");
+        assert!(
+            at(Command::SaveAs) < at(Command::Save) && at(Command::Save) < at(Command::Snapshot)
+        );
+        assert!(at(Command::Redo) < at(Command::Undo));
+    }
+
+    /// The names of the variants, as this file's text has them.
+    fn variants() -> Vec<&'static str> {
+        let text = include_str!("command.rs");
+        let body = text.split("enum Command {").nth(1).and_then(|rest| rest.split("\n}").next());
+        let lines = body.expect("the enum").lines().map(str::trim);
+        let names = lines.filter(|line| line.starts_with(char::is_uppercase));
+        names.map(|line| line.split(['(', ',']).next().unwrap_or_default()).collect()
+    }
+
+    #[test]
+    fn every_variant_is_in_the_list_once_per_value() {
+        let listed: Vec<String> = Command::ALL.iter().map(|c| format!("{c:?}")).collect();
+        let variants = variants();
+        assert!(variants.len() > 50 && variants.contains(&"New") && variants.contains(&"Resume"));
+        for name in &variants {
+            let is_it = |debug: &&String| debug.split('(').next() == Some(name);
+            assert!(listed.iter().any(|debug| is_it(&debug)), "{name} is not in ALL");
+        }
+        for (i, command) in Command::ALL.iter().enumerate() {
+            assert!(!Command::ALL[..i].contains(command), "{command:?} twice");
+        }
+    }
+
+    #[test]
+    fn every_value_of_a_command_with_values_is_in_the_list() {
+        let count =
+            |is_it: &dyn Fn(&Command) -> bool| Command::ALL.iter().filter(|c| is_it(c)).count();
+        assert_eq!(count(&|c| matches!(c, Command::New(_))), TEMPLATES.len());
+        assert_eq!(count(&|c| matches!(c, Command::OpenRecent(_))), MOST_RECENT);
+        assert_eq!(count(&|c| matches!(c, Command::Example(_))), EXAMPLES.len());
+        assert_eq!(count(&|c| matches!(c, Command::TextSize(_))), TEXT_SIZES.len());
+        assert_eq!(count(&|c| c.part().is_some()), Part::ALL.len());
     }
 }

@@ -1,11 +1,10 @@
 //! Edits of sliders that last longer than the pointer is down: turns of the wheel, a click that may
 //! become a double click.
 
-use std::time::Instant;
-
 use eframe::egui::Context;
 
-use super::app::{App, WHEEL_REST};
+use super::app::App;
+use super::commands::Run;
 use super::number::Edit;
 
 impl App {
@@ -15,15 +14,14 @@ impl App {
         if let Some(refusal) = refused {
             self.notices.say(refusal);
         }
+        let run = lasting.map(Run::Slider);
         // Something else is edited: what lasted is a step of its own.
-        if changed && self.lasting.is_some() && lasting != self.lasting {
+        if changed && self.run.is_some_and(|(other, _)| Some(other) != run) {
             self.document.end_gesture();
-            (self.lasting, self.wheel_until) = (None, None);
+            self.run = None;
         }
-        if lasting.is_some() {
-            self.lasting = lasting;
-            self.wheel_until = Some(Instant::now() + WHEEL_REST);
-            ctx.request_repaint_after(WHEEL_REST);
+        if let Some(run) = run {
+            self.go_on_with(ctx, run);
         }
     }
 }

@@ -12,6 +12,7 @@ use super::badge::class_text;
 use super::command::Command;
 use super::compare::Reference;
 use super::picture::whole_image;
+use crate::document::arrangement::Part;
 use crate::document::looks::{added, free_name, removed};
 use crate::film::Frame;
 use crate::film::sheet::reduced;
@@ -374,7 +375,7 @@ impl App {
             return StripOutcome::default();
         }
         self.strip.take_glimpses(ui, &self.live.glimpses());
-        let panel = eframe::egui::Panel::bottom("strip").resizable(false);
+        let panel = self.panels.panel(Part::Looks);
         let reference = &self.compare.reference;
         panel.show(ui, |ui| self.strip.ui(ui, &scene, reference)).inner
     }

@@ -4,14 +4,13 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::thread::JoinHandle;
 
-use eframe::egui::{
-    Align, Color32, Context, DragValue, Grid, Layout, Panel, ScrollArea, Sense, Ui,
-};
+use eframe::egui::{Align, Color32, Context, DragValue, Grid, Layout, ScrollArea, Sense, Ui};
 use egui_plot::{HLine, Line, Plot, PlotPoints, Points};
 
 use super::app::App;
 use super::inspector::Selection;
 use super::number::typed;
+use crate::document::arrangement::Part;
 use crate::mass::{Goal, MassError, Measured, Properties, Report, Step, Stuff, Wishes, measure};
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -299,10 +298,11 @@ impl App {
             Selection::Solid(solid) => Some(solid),
             _ => self.picked,
         };
-        let panel = Panel::bottom("mass").resizable(true).default_size(260.0).min_size(120.0);
+        let panel = self.panels.panel(Part::Mass);
         let scene = self.document.scene();
-        let close = panel.show(ui, |ui| self.mass.ui(ui, scene, solid)).inner;
-        self.mass.open = !close;
+        let shown = panel.show(ui, |ui| self.mass.ui(ui, scene, solid));
+        self.panels.note(Part::Mass, &shown.response);
+        self.mass.open = !shown.inner;
     }
 }
 

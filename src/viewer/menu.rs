@@ -1,13 +1,14 @@
 //! The menu bar.
 
+use std::path::PathBuf;
+
 use eframe::egui::{Align, Button, Label, Layout, MenuBar, Ui};
 
-use super::command::Command;
-use super::help::help_menu;
+use super::command::{Command, TEXT_SIZES};
 use super::inspector::Selection;
 use super::keep::KeepOffer;
 use super::lists::{Subject, offer_ui};
-use crate::document::settings::{Settings, Theme};
+use crate::document::settings::Theme;
 use crate::document::{Document, TEMPLATES};
 use crate::scene::Scene;
 
@@ -15,53 +16,37 @@ use crate::scene::Scene;
 pub(super) struct MenuState<'a> {
     /// For the names of undo and redo.
     pub(super) document: &'a Document,
-    /// Whether drags move the camera.
-    pub(super) camera_tool: bool,
-    /// Whether a click focuses the camera.
-    pub(super) focus_tool: bool,
-    /// Whether the lights have handles.
-    pub(super) handles: bool,
-    /// Whether the light mixer shows.
-    pub(super) mixer: bool,
-    /// Whether looks and snapshots show.
-    pub(super) looks: bool,
-    /// Whether the picture is compared with another one.
-    pub(super) compare: bool,
-    /// Whether the sample map shows in the picture's place.
-    pub(super) sample_map: bool,
-    /// Whether the chart of speed against accuracy shows.
-    pub(super) chart: bool,
-    /// Whether the panel of mass properties shows.
-    pub(super) mass: bool,
-    /// Whether the panel of a pixel shows.
-    pub(super) pixel: bool,
+    /// Files opened before.
+    pub(super) recent: &'a [PathBuf],
+    /// Whether what a command switches is on.
+    pub(super) is_on: &'a dyn Fn(Command) -> bool,
+    /// Why a command cannot be done now, if it cannot.
+    pub(super) refusal: &'a dyn Fn(Command) -> Option<String>,
     /// What commands about lights and materials are about.
     pub(super) subject: Subject,
     /// Whether what was traced can be kept.
     pub(super) keep: KeepOffer,
 }
 
-/// Shows the menu bar and its buttons; gives the command that was chosen. Theme and zoom are set at
-/// once.
-pub(super) fn menu_ui(
-    ui: &mut Ui,
-    state: &MenuState<'_>,
-    settings: &mut Settings,
-) -> Option<Command> {
+/// Shows the menu bar and its buttons; gives the command that was chosen.
+pub(super) fn menu_ui(ui: &mut Ui, state: &MenuState<'_>) -> Option<Command> {
     let mut chosen = None;
     MenuBar::new().ui(ui, |ui| {
-        ui.menu_button("File", |ui| file_menu(ui, state, settings, &mut chosen))
+        ui.menu_button("File", |ui| file_menu(ui, state, &mut chosen))
             .response
             .on_hover_text("Open, save, export");
         ui.menu_button("Edit", |ui| edit_menu(ui, state, &mut chosen))
             .response
             .on_hover_text("Undo and redo; lights and materials");
-        ui.menu_button("View", |ui| view_menu(ui, state, settings, &mut chosen))
+        ui.menu_button("Picture", |ui| items(ui, &PICTURE, state, &mut chosen))
             .response
-            .on_hover_text("Size of the picture, lights, colours of the window");
-        ui.menu_button("Help", |ui| help_menu(ui, &mut chosen))
+            .on_hover_text("Brightness, clipping, the part that is traced first");
+        ui.menu_button("View", |ui| view_menu(ui, state, &mut chosen))
             .response
-            .on_hover_text("Examples, and what a report of a fault needs");
+            .on_hover_text("Size of the picture, panels, colours of the window");
+        ui.menu_button("Help", |ui| items(ui, &HELP, state, &mut chosen)).response.on_hover_text(
+            "Examples, all commands, keys and gestures, and what a report of a fault needs",
+        );
         ui.separator();
         for (command, name) in [(Command::Undo, "Undo"), (Command::Redo, "Redo")] {
             let step = step(state.document, command);
@@ -77,13 +62,8 @@ pub(super) fn menu_ui(
                 chosen = Some(command);
             }
         }
-        for (command, on) in [
-            (Command::CameraTool, state.camera_tool),
-            (Command::Mixer, state.mixer),
-            (Command::Looks, state.looks),
-            (Command::Compare, state.compare),
-        ] {
-            let button = Button::selectable(on, command.name());
+        for command in [Command::CameraTool, Command::Mixer, Command::Looks, Command::Compare] {
+            let button = Button::selectable((state.is_on)(command), command.name());
             if ui.add(button).on_hover_text(command.about()).clicked() {
                 chosen = Some(command);
             }
@@ -111,12 +91,7 @@ fn step(document: &Document, command: Command) -> Option<&str> {
     if command == Command::Undo { document.undo_name() } else { document.redo_name() }
 }
 
-fn file_menu(
-    ui: &mut Ui,
-    state: &MenuState<'_>,
-    settings: &Settings,
-    chosen: &mut Option<Command>,
-) {
+fn file_menu(ui: &mut Ui, state: &MenuState<'_>, chosen: &mut Option<Command>) {
     ui.menu_button("New", |ui| {
         for (i, (name, _)) in TEMPLATES.iter().enumerate() {
             if ui.button(*name).on_hover_text(Command::New(i).about()).clicked() {
@@ -127,7 +102,7 @@ fn file_menu(
     .response
     .on_hover_text("Starts a scene from a template");
     item(ui, Command::Open, chosen);
-    let recent = &settings.recent;
+    let recent = state.recent;
     ui.add_enabled_ui(!recent.is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
             for (i, path) in recent.iter().enumerate() {
@@ -198,51 +173,104 @@ pub(super) fn things_ui(
     }
 }
 
-fn view_menu(
-    ui: &mut Ui,
-    state: &MenuState<'_>,
-    settings: &mut Settings,
-    chosen: &mut Option<Command>,
-) {
-    for command in [Command::Fit, Command::ActualSize, Command::ZoomIn, Command::ZoomOut] {
-        item(ui, command, chosen);
-    }
-    item(ui, Command::CameraTool, chosen);
-    item(ui, Command::Snapshot, chosen);
-    ui.separator();
-    for (command, on) in [
-        (Command::FocusTool, state.focus_tool),
-        (Command::Handles, state.handles),
-        (Command::Mixer, state.mixer),
-        (Command::Looks, state.looks),
-        (Command::Compare, state.compare),
-        (Command::Chart, state.chart),
-        (Command::Mass, state.mass),
-        (Command::Pixel, state.pixel),
-        (Command::SampleMap, state.sample_map),
-    ] {
-        let button = with_keys(ui, command, command.name()).selected(on);
-        if ui.add(button).on_hover_text(command.about()).clicked() {
+/// How a command stands in a menu.
+#[derive(Clone, Copy)]
+enum Line {
+    /// As what it does.
+    Act(Command),
+    /// As what it switches.
+    Switch(Command),
+    /// No command: a line between two groups.
+    Rule,
+}
+
+const PICTURE: [Line; 13] = [
+    Line::Act(Command::Brighter),
+    Line::Act(Command::Darker),
+    Line::Act(Command::NoExposure),
+    Line::Rule,
+    Line::Switch(Command::Clipping),
+    Line::Switch(Command::SampleMap),
+    Line::Rule,
+    Line::Switch(Command::CropTool),
+    Line::Act(Command::ClearCrop),
+    Line::Rule,
+    Line::Act(Command::Snapshot),
+    Line::Switch(Command::Compare),
+    Line::Switch(Command::FocusTool),
+];
+
+const VIEW: [Line; 19] = [
+    Line::Act(Command::Fit),
+    Line::Act(Command::ActualSize),
+    Line::Act(Command::ZoomIn),
+    Line::Act(Command::ZoomOut),
+    Line::Rule,
+    Line::Switch(Command::CameraTool),
+    Line::Switch(Command::Handles),
+    Line::Rule,
+    Line::Switch(Command::Outline),
+    Line::Switch(Command::Inspector),
+    Line::Switch(Command::StatusLine),
+    Line::Switch(Command::Mixer),
+    Line::Switch(Command::Looks),
+    Line::Switch(Command::Chart),
+    Line::Switch(Command::Mass),
+    Line::Switch(Command::Pixel),
+    Line::Rule,
+    Line::Act(Command::ResetLayout),
+    Line::Rule,
+];
+
+const HELP: [Line; 7] = [
+    Line::Act(Command::Welcome),
+    Line::Rule,
+    Line::Act(Command::Palette),
+    Line::Act(Command::Shortcuts),
+    Line::Rule,
+    Line::Act(Command::Diagnostics),
+    Line::Act(Command::LogFolder),
+];
+
+/// Shows lines of a menu.
+fn items(ui: &mut Ui, lines: &[Line], state: &MenuState<'_>, chosen: &mut Option<Command>) {
+    for line in lines {
+        let (command, button) = match *line {
+            Line::Rule => {
+                ui.separator();
+                continue;
+            }
+            Line::Act(command) => (command, with_keys(ui, command, command.name())),
+            Line::Switch(command) => {
+                let on = (state.is_on)(command);
+                (command, with_keys(ui, command, command.name()).selected(on))
+            }
+        };
+        let refusal = (state.refusal)(command);
+        let response = ui.add_enabled(refusal.is_none(), button);
+        let response = response.on_disabled_hover_text(refusal.as_deref().unwrap_or_default());
+        if response.on_hover_text(command.about()).clicked() {
             *chosen = Some(command);
             ui.close();
         }
     }
-    ui.separator();
-    for (theme, name) in
-        [(Theme::System, "As the system"), (Theme::Light, "Light"), (Theme::Dark, "Dark")]
-    {
-        let button = Button::selectable(settings.theme == theme, name);
-        if ui.add(button).on_hover_text("Colours of the window").clicked() {
-            settings.theme = theme;
-        }
-    }
-    ui.separator();
-    for percent in [80, 100, 125, 150, 200] {
-        let button = Button::selectable(settings.zoom_percent == percent, format!("{percent} %"));
-        if ui.add(button).on_hover_text("Size of text and controls").clicked() {
-            settings.zoom_percent = percent;
-        }
-    }
+}
+
+fn view_menu(ui: &mut Ui, state: &MenuState<'_>, chosen: &mut Option<Command>) {
+    items(ui, &VIEW, state, chosen);
+    ui.menu_button("Colours", |ui| {
+        let all = [Theme::System, Theme::Light, Theme::Dark].map(Command::Colours);
+        items(ui, &all.map(Line::Switch), state, chosen);
+    })
+    .response
+    .on_hover_text("Light or dark");
+    ui.menu_button("Size of text", |ui| {
+        let all: [Line; TEXT_SIZES.len()] =
+            std::array::from_fn(|index| Line::Switch(Command::TextSize(index)));
+        items(ui, &all, state, chosen);
+    })
+    .response
+    .on_hover_text("Of text and controls");
 }
 
 pub(super) fn item(ui: &mut Ui, command: Command, chosen: &mut Option<Command>) {

@@ -5,6 +5,7 @@ use eframe::egui::{
     TextureHandle, TextureId, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
+use super::crop::Crop;
 use super::navigate;
 use crate::film::Frame;
 use crate::scene::Camera;
@@ -66,7 +67,8 @@ impl Layer {
             self.pieces.clear();
         }
         self.pieces.retain(|piece| matches!(piece.texture, Texture::Copied(_)));
-        for (i, &rect) in pieces(frame.size).iter().enumerate() {
+        let side = ui.input(|i| i.max_texture_side).min(TEXTURE_SIDE);
+        for (i, &rect) in pieces(frame.size, side).iter().enumerate() {
             let image = image(frame, rect);
             match self.pieces.get_mut(i).map(|piece| &mut piece.texture) {
                 Some(Texture::Copied(handle)) => handle.set(image, sharp),
@@ -130,6 +132,8 @@ pub(super) struct PictureView {
     pub(super) camera_tool: bool,
     /// Whether a click focuses the camera.
     pub(super) focus_tool: bool,
+    /// The region that is traced first.
+    pub(super) crop: Crop,
 }
 
 /// What the person did in the picture.
@@ -139,6 +143,8 @@ pub(super) struct PictureOutcome {
     pub(super) clicked: Option<[f64; 2]>,
     /// Whether the camera was moved.
     pub(super) camera_moved: bool,
+    /// Whether another region was drawn, or the one before taken away.
+    pub(super) cropped: bool,
     /// Where the pointer is, in pixels of the picture.
     pub(super) pointer: Option<[f64; 2]>,
     /// The same, if nothing lies between.
@@ -157,6 +163,7 @@ impl PictureView {
             beside: Beside::Nothing,
             camera_tool: false,
             focus_tool: false,
+            crop: Crop::default(),
         }
     }
 
@@ -235,8 +242,12 @@ impl PictureView {
         let dots = ui.pixels_per_point();
         let mut outcome = PictureOutcome::default();
         self.wheel(ui, &response, camera, &mut outcome);
-        self.drag(ui, &response, camera, &mut outcome);
+        if !self.crop.tool {
+            self.drag(ui, &response, camera, &mut outcome);
+        }
         let place = self.place(view, dots);
+        let pixels = [self.size.x as u32, self.size.y as u32];
+        outcome.cropped = self.crop.follow(ui, &response, place, pixels);
         let pixel = |at: Pos2| {
             let point = (at - place.min) / place.size() * self.size;
             place.contains(at).then_some([f64::from(point.x), f64::from(point.y)])
@@ -248,6 +259,7 @@ impl PictureView {
         outcome.hovered = response.hover_pos().and_then(pixel);
         self.paint(ui, view, place);
         let cursor = match (self.camera_tool, response.dragged()) {
+            _ if self.crop.tool => CursorIcon::Crosshair,
             (true, _) => CursorIcon::Move,
             (false, false) if self.focus_tool => CursorIcon::Cell,
             (false, true) => CursorIcon::Grabbing,
@@ -270,6 +282,7 @@ impl PictureView {
             }
             Beside::Whole => self.other.paint(&painter, place),
         }
+        self.crop.paint(&painter, place, [self.size.x as u32, self.size.y as u32]);
     }
 
     /// The wheel zooms to the pointer, or moves the camera.
@@ -343,14 +356,14 @@ fn options(whole: bool) -> TextureOptions {
     }
 }
 
-/// Cuts a frame into rectangles `[left, top, right, bottom]` no longer than a texture may be.
-fn pieces(size: [u32; 2]) -> Vec<[usize; 4]> {
+/// Cuts a frame into rectangles `[left, top, right, bottom]` no longer than `side`.
+fn pieces(size: [u32; 2], side: usize) -> Vec<[usize; 4]> {
     let [width, height] = size.map(|n| n as usize);
     let mut cut = Vec::new();
-    for top in (0..height).step_by(TEXTURE_SIDE) {
-        for left in (0..width).step_by(TEXTURE_SIDE) {
-            let right = (left + TEXTURE_SIDE).min(width);
-            cut.push([left, top, right, (top + TEXTURE_SIDE).min(height)]);
+    for top in (0..height).step_by(side) {
+        for left in (0..width).step_by(side) {
+            let right = (left + side).min(width);
+            cut.push([left, top, right, (top + side).min(height)]);
         }
     }
     cut
@@ -387,8 +400,8 @@ mod tests {
 
     #[test]
     fn a_large_frame_is_cut_into_pieces_that_cover_it_once() {
-        assert_eq!(pieces([2048, 1]), [[0, 0, 2048, 1]]);
-        let cut = pieces([5000, 2500]);
+        assert_eq!(pieces([2048, 1], 2048), [[0, 0, 2048, 1]]);
+        let cut = pieces([5000, 2500], 2048);
         assert_eq!(cut.len(), 6);
         let area: usize = cut.iter().map(|[l, t, r, b]| (r - l) * (b - t)).sum();
         assert_eq!(area, 5000 * 2500);

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use eframe::egui::{
-    Align, Button, Color32, DragValue, Grid, Layout, Panel, Pos2, Rect, ScrollArea, Sense, Ui, vec2,
+    Align, Button, Color32, DragValue, Grid, Layout, Pos2, Rect, ScrollArea, Sense, Ui, vec2,
 };
 
 use super::app::App;
@@ -13,6 +13,7 @@ use super::inspector::Selection;
 use super::pixel_bars::bars_ui;
 use super::pixel_lines::{Line, Target, lines};
 use super::pixel_rows::rows_ui;
+use crate::document::arrangement::Part;
 use crate::film::develop::{Development, code8};
 use crate::scene::Scene;
 use crate::session::inspect::{Bars, Met, PixelTree, TreeNode, bars, merged};
@@ -287,10 +288,12 @@ impl App {
         if !self.pixel.open {
             return;
         }
-        let panel = Panel::bottom("pixel").resizable(true).default_size(270.0).min_size(140.0);
+        let panel = self.panels.panel(Part::Pixel);
         let known = self.live.inspected();
         let today = (self.document.scene(), self.selection);
-        let outcome = panel.show(ui, |ui| self.pixel.ui(ui, &known, today)).inner;
+        let shown = panel.show(ui, |ui| self.pixel.ui(ui, &known, today));
+        self.panels.note(Part::Pixel, &shown.response);
+        let outcome = shown.inner;
         self.pixel.open = !outcome.close;
         if let (Some(target), Some(face)) = (outcome.clicked, &self.pixel.face) {
             let itself = ui.input(|i| i.modifiers.alt);

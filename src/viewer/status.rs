@@ -2,12 +2,19 @@
 
 use eframe::egui::{Align, Button, Layout, ProgressBar, Ui};
 
+use super::clip::clipped_text;
 use super::command::Command;
+use crate::film::clipping::Clipped;
 use crate::session::live::{Shown, Stage, Status};
 use crate::session::{Class, EditReport};
 
 /// Shows the status line; gives a command if one of its buttons was pressed.
-pub(super) fn status_ui(ui: &mut Ui, status: &Status, shown: Option<&Shown>) -> Option<Command> {
+pub(super) fn status_ui(
+    ui: &mut Ui,
+    status: &Status,
+    shown: Option<&Shown>,
+    clipped: Option<Clipped>,
+) -> Option<Command> {
     let mut command = None;
     ui.horizontal(|ui| {
         ui.label(stage_text(status, shown)).on_hover_text(STAGE);
@@ -38,13 +45,19 @@ pub(super) fn status_ui(ui: &mut Ui, status: &Status, shown: Option<&Shown>) -> 
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.label(cache_text(status)).on_hover_text(cache_about(status));
+            if let Some(clipped) = clipped {
+                ui.separator();
+                ui.label(clipped_text(clipped)).on_hover_text(CLIPPED);
+            }
         });
     });
     command
 }
 
-const STAGE: &str = "A new picture comes coarse first, then with one sample per pixel, then whole; \
+const STAGE: &str = "A new picture comes coarse first, then with one sample per pixel or a region, then whole; \
                      dotted pixels are still to be grown again, the others are exact";
+const CLIPPED: &str = "Pixels with a channel brighter than the screen can show, marked red; and with one \
+                       darker than black, marked blue";
 const CACHE: &str = "Kept ray trees, matrix and highlight lists, of the memory that they may take";
 
 fn stage_text(status: &Status, shown: Option<&Shown>) -> String {
@@ -52,6 +65,7 @@ fn stage_text(status: &Status, shown: Option<&Shown>) -> String {
         None => "no picture yet".into(),
         Some(Stage::Coarse) => "coarse".into(),
         Some(Stage::OneSample) => "one sample".into(),
+        Some(Stage::Region) => "the region".into(),
         Some(Stage::Mending) => pending_text(status.pending),
         Some(Stage::Whole) if status.in_step => "exact".into(),
         Some(Stage::Whole) => "earlier scene".into(),

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::film::Frame;
 use crate::film::layout::{BLOCK, LANES, Layout, Place, TILE, TILE_BLOCKS};
+use crate::film::plates::Region;
 use crate::scene::Scene;
 use crate::scene::change::Change;
 use crate::session::Session;
@@ -24,12 +25,13 @@ pub(super) struct Mending {
 }
 
 impl Mending {
-    /// Begins a plan of `whole`, the tiles nearest to `cursor`, in pixels, first.
+    /// Begins a plan of `whole`: the tiles of the region first, then those nearest to the cursor, in
+    /// pixels.
     pub(super) fn new(
         whole: &mut Session,
         scene: Arc<Scene>,
         mut plan: Plan,
-        cursor: Option<[f64; 2]>,
+        (region, cursor): (Option<Region>, Option<[f64; 2]>),
     ) -> Mending {
         let layout = whole.transport().layout;
         if let Some(cursor) = cursor {
@@ -37,6 +39,10 @@ impl Mending {
                 let far = |tile: &PlanTile| distance2(layout, tile.tile, cursor);
                 far(a).total_cmp(&far(b))
             });
+        }
+        if let Some(region) = region.and_then(|region| region.within(layout.size)) {
+            let first = region.tiles(layout);
+            plan.tiles.sort_by_key(|tile| !first.contains(&tile.tile));
         }
         let change = Change::between(whole.scene(), &scene);
         let regrow = Arc::new(whole.regrow(scene.clone(), &change, plan.clone()));

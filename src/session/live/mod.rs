@@ -22,6 +22,8 @@ use super::inspect::PixelTree;
 use super::layers::Extras;
 use super::{Class, EditReport, Options};
 use crate::film::Frame;
+use crate::film::clipping::Clipped;
+use crate::film::plates::Region;
 use crate::film::write::Format;
 use crate::forest::counts::SampleMap;
 use crate::scene::Scene;
@@ -36,6 +38,8 @@ pub enum Stage {
     Coarse,
     /// All pixels, one sample each.
     OneSample,
+    /// What the scene asks for, in the part that [`Live::look_first`] names; coarse elsewhere.
+    Region,
     /// What the scene asks for, but for some pixels that are being grown again: they are coarse, and
     /// one of sixteen is a mark.
     Mending,
@@ -59,6 +63,18 @@ pub struct Shown {
     pub stage: Stage,
     /// The pixels' numbers of samples, of a whole picture whose sampling is adaptive.
     pub map: Option<Arc<SampleMap>>,
+    /// The picture with marks on what a screen cannot show, if they are wanted and nothing is being
+    /// grown again; where the card draws, its picture has them too.
+    pub marked: Option<Marked>,
+}
+
+/// A picture with marks on its clipped pixels.
+#[derive(Clone)]
+pub struct Marked {
+    /// The picture; coarse beside a region that is traced first.
+    pub frame: Arc<Frame>,
+    /// How many pixels are marked.
+    pub clipped: Clipped,
 }
 
 /// What the threads are doing, for the status line.
@@ -268,6 +284,17 @@ impl Live {
     /// are missing that only the frontier of the whole picture knows.
     pub fn costs(&self) -> Arc<BTreeMap<String, Cost>> {
         self.board.costs()
+    }
+
+    /// Marks pixels that a screen cannot show from now on, or no longer: in what is shown alone.
+    pub fn mark_clipped(&self, on: bool) {
+        self.order(Message::MarkClipped(on));
+    }
+
+    /// Names a part of the picture that is to be traced before the rest, from the next trace on: its
+    /// tiles are shown as soon as they are whole, while all others still are coarse.
+    pub fn look_first(&self, region: Option<Region>) {
+        self.order(Message::LookFirst(region));
     }
 
     /// Draws whole pictures on a graphics card too from now on, or no longer. A card that fails is

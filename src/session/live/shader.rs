@@ -1,11 +1,13 @@
 //! The thread that owns the pictures: takes wishes, shades what needs no ray, sends off the rest.
 
 mod card;
+mod clipping;
 mod curious;
 mod exports;
 mod glances;
 mod keep;
 mod mend;
+mod region;
 mod running;
 mod show;
 
@@ -23,6 +25,8 @@ use super::board::{Board, Target};
 use super::mending::Mending;
 use super::tracer::{self, Compiled, Outcome, staged};
 use super::{Event, Export, Glance, Stage, export, guarded, pool};
+use crate::film::Film;
+use crate::film::plates::Region;
 use crate::progress::Progress;
 use crate::scene::Scene;
 use crate::scene::change::Change;
@@ -52,6 +56,9 @@ pub(super) enum Message {
     /// Pixels to be taken apart.
     Inspect(Vec<[u32; 2]>),
     Glance(Vec<Glance>),
+    MarkClipped(bool),
+    /// The part of the picture that is traced first.
+    LookFirst(Option<Region>),
     Export(Export),
     /// A stage before the whole picture.
     Staged {
@@ -90,6 +97,8 @@ struct Preview {
     divisor: u32,
     /// The scene shown, at its full size.
     scene: Arc<Scene>,
+    /// The preview before it, which shows where this one was not traced.
+    behind: Option<Box<Preview>>,
 }
 
 /// A wish that is not traced.
@@ -118,6 +127,12 @@ pub(super) struct Shader {
     product: Option<Product>,
     /// What it drew last.
     on_card: Option<Arc<Picture>>,
+    /// Whether clipped pixels are marked.
+    marks: bool,
+    /// Memory for it.
+    film: Film,
+    /// The part of the picture that is traced first.
+    region: Option<Region>,
     /// Shown instead of the whole picture while there is one.
     preview: Option<Preview>,
     job: Option<Running>,
@@ -166,6 +181,9 @@ impl Shader {
             whole: None,
             product: None,
             on_card: None,
+            marks: false,
+            film: Film::default(),
+            region: None,
             preview: None,
             job: None,
             jobs: 0,
@@ -258,6 +276,8 @@ impl Shader {
             Message::DrawOn(gpu) => self.draw_on(gpu),
             Message::Inspect(pixels) => self.curious.want(pixels),
             Message::Glance(wanted) => self.watch_glances(wanted),
+            Message::MarkClipped(on) => self.mark_clipped(on),
+            Message::LookFirst(region) => self.region = region,
             Message::Export(export) => self.export(export),
             Message::Staged { id, stage, divisor, session } => {
                 self.staged(id, stage, divisor, *session);
@@ -320,6 +340,11 @@ impl Shader {
     /// Edits and shows the preview, if there is one and that needs no ray.
     fn reach_preview(&mut self, wanted: &Arc<Scene>, taken: Instant) {
         let Some(preview) = &mut self.preview else { return };
+        if let Some(behind) = &mut preview.behind {
+            let scene = Arc::new(staged(wanted, behind.stage, behind.divisor));
+            // What needs rays stays as it was: it is coarse.
+            let _ = behind.session.edit_without_rays(&scene);
+        }
         let scene = Arc::new(staged(wanted, preview.stage, preview.divisor));
         if let Ok(report) = preview.session.edit_without_rays(&scene) {
             preview.scene = wanted.clone();
@@ -358,7 +383,7 @@ impl Shader {
         let reason = work.reason().to_owned();
         let mending = match (work, &mut self.whole) {
             (Work::Regrow(plan), Some(whole)) => {
-                Some(Mending::new(whole, scene.clone(), plan, self.board.cursor()))
+                Some(Mending::new(whole, scene.clone(), plan, (self.region, self.board.cursor())))
             }
             _ => None,
         };
@@ -397,6 +422,7 @@ impl Shader {
             reuse: job.reuse.clone(),
             regrow,
             cache,
+            region: self.region,
         };
         self.traces.send(task).expect("the tracer lives as long as the shader");
         self.job = Some(job);
@@ -422,7 +448,9 @@ impl Shader {
             mending.mark(Some(session.frame()));
         }
         let scene = if reached { wanted } else { scene };
-        self.preview = Some(Preview { session, stage, divisor, scene });
+        let behind = self.preview.take().filter(|before| before.stage == Stage::Coarse);
+        let behind = behind.map(Box::new);
+        self.preview = Some(Preview { session, stage, divisor, scene, behind });
         self.show();
     }
 

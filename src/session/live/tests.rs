@@ -3,6 +3,7 @@
 mod card;
 mod inspected;
 mod keep;
+mod view;
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};

@@ -10,6 +10,7 @@ use rayon::ThreadPool;
 
 use super::shader::Message;
 use super::{Stage, guarded, pool};
+use crate::film::plates::Region;
 use crate::forest::Forest;
 use crate::geometry::Geometry;
 use crate::progress::{Cancelled, Progress};
@@ -34,6 +35,8 @@ pub(super) struct Task {
     pub(super) regrow: Option<Arc<Regrow>>,
     /// What is opened instead of tracing anything.
     pub(super) cache: Option<PathBuf>,
+    /// The part of the picture that is traced first.
+    pub(super) region: Option<Region>,
 }
 
 /// A scene and what was compiled of its solids.
@@ -145,13 +148,14 @@ impl Tracer {
 
     /// The whole picture, or `None` if another scene waits, or only some of it is wanted.
     fn trace(&mut self, task: &Task) -> Result<Option<Outcome>, TraceError> {
-        let Task { id, scene, control, known: _, reuse, regrow, cache: _ } = task;
+        let Task { id, scene, control, known: _, reuse, regrow, cache: _, region } = task;
+        let region = region.and_then(|region| region.within(scene.picture.size));
         let geometry = match regrow {
             Some(regrow) => regrow.geometry.clone(),
             None => self.geometry(task)?,
         };
         let divisor = self.divisor.round() as u32;
-        for (number, stage) in stages(scene, divisor).into_iter().enumerate() {
+        for (number, stage) in stages(scene, divisor, region).into_iter().enumerate() {
             if regrow.as_ref().is_some_and(|regrow| !regrow.shows(stage)) {
                 return Ok(None);
             }
@@ -166,8 +170,9 @@ impl Tracer {
                 reuse: if whole { taken().unwrap_or_default() } else { Forest::default() },
             };
             let begun = Instant::now();
-            let session = Session::begin(start, &control.progress)?;
-            if number == 0 {
+            let part = region.filter(|_| stage == Stage::Region);
+            let session = Session::begin_with(start, part, &control.progress)?;
+            if number == 0 && stage != Stage::Region {
                 self.adapt(scene, stage, divisor, begun.elapsed().as_secs_f64());
             }
             if whole {
@@ -199,7 +204,7 @@ impl Tracer {
         let (side, samples) = match stage {
             Stage::Coarse => (divisor, 1),
             Stage::OneSample => (1, 1),
-            Stage::Whole | Stage::Mending => (1, scene.trace.samples),
+            Stage::Region | Stage::Mending | Stage::Whole => (1, scene.trace.samples),
         };
         let seconds = seconds / f64::from(samples);
         let fitting = f64::from(side) * (seconds / COARSE_SECONDS).sqrt();
@@ -218,14 +223,17 @@ impl Regrow {
 }
 
 /// The stages in which a scene is traced: those before the whole picture that are much quicker.
-fn stages(scene: &Scene, divisor: u32) -> Vec<Stage> {
+/// With a region that is the second.
+fn stages(scene: &Scene, divisor: u32, region: Option<Region>) -> Vec<Stage> {
     let [width, height] = scene.picture.size.map(u64::from);
     let rays = width * height * u64::from(scene.trace.samples);
     let mut stages = Vec::new();
     if rays >= TINY_RAYS && divisor > 1 {
         stages.push(Stage::Coarse);
     }
-    if rays >= TINY_RAYS && scene.trace.samples >= FEW_SAMPLES {
+    if rays >= TINY_RAYS && region.is_some() {
+        stages.push(Stage::Region);
+    } else if rays >= TINY_RAYS && scene.trace.samples >= FEW_SAMPLES {
         stages.push(Stage::OneSample);
     }
     stages.push(Stage::Whole);
@@ -235,7 +243,7 @@ fn stages(scene: &Scene, divisor: u32) -> Vec<Stage> {
 /// The scene as a stage shows it.
 pub(super) fn staged(scene: &Scene, stage: Stage, divisor: u32) -> Scene {
     let mut staged = scene.clone();
-    if stage < Stage::Whole {
+    if stage <= Stage::OneSample {
         staged.trace.samples = 1;
     }
     if stage == Stage::Coarse {
@@ -257,11 +265,14 @@ mod tests {
 
     #[test]
     fn stages_that_would_not_help_are_left_out() {
-        let at = |size, samples, divisor| stages(&scene(size, samples), divisor);
+        let at = |size, samples, divisor| stages(&scene(size, samples), divisor, None);
         assert_eq!(at([1280, 720], 16, 4), [Coarse, OneSample, Whole]);
         assert_eq!(at([1280, 720], 1, 4), [Coarse, Whole]);
         assert_eq!(at([1280, 720], 16, 1), [OneSample, Whole]);
         assert_eq!(at([48, 32], 16, 4), [Whole]);
+        let part = Some(Region { corner: [10, 10], size: [50, 50] });
+        assert_eq!(stages(&scene([1280, 720], 16), 4, part), [Coarse, Stage::Region, Whole]);
+        assert_eq!(stages(&scene([48, 32], 16), 4, part), [Whole]);
     }
 
     #[test]
@@ -272,6 +283,7 @@ mod tests {
         let one = staged(&fine, OneSample, 4);
         assert_eq!((one.picture.size, one.trace.samples), ([101, 3], 1));
         assert_eq!(staged(&fine, Whole, 4), fine);
+        assert_eq!(staged(&fine, Stage::Region, 4), fine);
     }
 
     #[test]

@@ -12,6 +12,7 @@ impl Shader {
     /// Draws whole pictures by a card from now on, or no longer.
     pub(super) fn draw_on(&mut self, gpu: Option<Gpu>) {
         self.product = gpu.map(Product::new);
+        self.product.iter_mut().for_each(|product| product.mark_clipped(self.marks));
         self.show();
     }
 

@@ -21,7 +21,14 @@ impl Shader {
             (mending.frame(), mending.scene.clone(), mending.regrow.geometry.clone())
         }) {
             self.board.show(
-                Shown { frame: Some(frame), card: None, scene, stage: Stage::Mending, map: None },
+                Shown {
+                    frame: Some(frame),
+                    card: None,
+                    scene,
+                    stage: Stage::Mending,
+                    map: None,
+                    marked: None,
+                },
                 geometry,
             );
             self.badges.renew(Stage::Mending, &self.board);
@@ -34,20 +41,25 @@ impl Shader {
 
     /// Hands the newest picture to the window, as the processor and the card have it.
     pub(super) fn hand_over(&mut self, card: Option<Arc<Picture>>) {
-        if let (None, Some(whole)) = (&card, &mut self.whole) {
+        if let Some(whole) = self.whole.as_mut().filter(|_| card.is_none() || self.marks) {
             whole.catch_up();
         }
+        let marked = self.marked();
         let (session, scene, stage) = match (&self.preview, &self.whole) {
             (Some(p), _) => (&p.session, p.scene.clone(), p.stage),
             (None, Some(whole)) => (whole, whole.shared_scene(), Stage::Whole),
             (None, None) => return,
         };
         let shown = Shown {
-            frame: (!session.owes_frame()).then(|| session.shared_frame()),
+            frame: match &self.preview {
+                Some(preview) => Some(preview.frame()),
+                None => (!session.owes_frame()).then(|| session.shared_frame()),
+            },
             card,
             scene,
             stage,
             map: session.sample_map().filter(|_| stage == Stage::Whole),
+            marked,
         };
         self.board.show(shown, session.shared_geometry());
         self.badges.renew(stage, &self.board);

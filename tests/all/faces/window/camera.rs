@@ -47,7 +47,7 @@ fn a_moved_camera_shows_a_coarse_picture_first_and_then_the_exact_one() {
     let is_first = |window: &Window| match window.stage() {
         Stage::Coarse => window.shows("coarse"),
         Stage::OneSample => window.shows("one sample"),
-        Stage::Mending | Stage::Whole => false,
+        Stage::Region | Stage::Mending | Stage::Whole => false,
     };
     let mut seen = false;
     for i in 1..200 {

@@ -72,6 +72,33 @@ fn the_cards_picture_looks_like_the_processors() {
 }
 
 #[test]
+fn the_cards_tone_and_marks_look_like_the_processors() {
+    let bright = "[picture]\nexposure = 2\n";
+    let plain = SCENE.replace("[picture]\n", bright);
+    let toned = SCENE.replace("[picture]\n", &format!("{bright}tone = \"neutral\"\n"));
+    let mut seen = Vec::new();
+    for scene in [plain, toned] {
+        let windows = [Graphics::Gpu, Graphics::Cpu].map(|graphics| on_card(&scene, graphics).0);
+        let mut pictures = Vec::new();
+        for mut window in windows {
+            let first = picture_on_screen(&mut window);
+            window.key(Modifiers::NONE, Key::X);
+            window.until_text("clipped ");
+            pictures.push([first, picture_on_screen(&mut window)]);
+        }
+        let [card, processor] = [&pictures[0], &pictures[1]];
+        for (card, processor) in card.iter().zip(processor) {
+            assert!(largest_difference(card, processor) <= 1);
+        }
+        seen.push(pictures.swap_remove(0));
+    }
+    let [[plain, marked], [toned, unclipped]] = [&seen[0], &seen[1]];
+    assert!(largest_difference(plain, toned) > 20, "the tone curve is seen");
+    assert!(largest_difference(plain, marked) > 20, "the marks are seen");
+    assert!(largest_difference(toned, unclipped) == 0, "nothing is clipped");
+}
+
+#[test]
 fn a_processor_that_pretends_to_be_a_card_is_not_asked_for_the_picture() {
     let (window, state) = on_card(SCENE, Graphics::Auto);
     let software = state.adapter.get_info().device_type == eframe::wgpu::DeviceType::Cpu;

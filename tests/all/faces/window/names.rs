@@ -271,13 +271,16 @@ fn every_control_of_the_colour_picker_has_a_name() {
 #[test]
 fn every_item_of_the_menus_has_a_name_and_a_tooltip() {
     let mut window = tall();
-    let paths: [(&[&str], usize); 6] = [
+    let paths: [(&[&str], usize); 9] = [
         (&["File"], 7),
         (&["Edit"], 8),
-        (&["View"], 14),
-        (&["Help"], 3),
+        (&["Picture"], 10),
+        (&["View"], 16),
+        (&["Help"], 5),
         (&["File", "New"], 3),
         (&["File", "Open recent"], 1),
+        (&["View", "Colours"], 3),
+        (&["View", "Size of text"], 5),
     ];
     for (path, least) in paths {
         window.menu(&path[..path.len() - 1]);
@@ -286,8 +289,22 @@ fn every_item_of_the_menus_has_a_name_and_a_tooltip() {
         window.walk(&before, least);
         window.key(Modifiers::NONE, Key::Escape);
         window.key(Modifiers::NONE, Key::Escape);
-        assert!(!window.shows("Open…") && !window.shows("As the system"), "{path:?} is closed");
+        assert!(!window.shows("Open…") && !window.shows("Reset layout"), "{path:?} is closed");
     }
+}
+
+#[test]
+fn every_line_of_the_palette_and_of_the_keys_has_a_name_and_a_tooltip() {
+    let mut window = tall();
+    let before = window.controls();
+    window.key(Modifiers::COMMAND, Key::K);
+    window.write("z");
+    window.harness.run_steps(3);
+    window.walk(&before, 5);
+    window.key(Modifiers::NONE, Key::Escape);
+    window.key(Modifiers::NONE, Key::Questionmark);
+    window.harness.run_steps(3);
+    window.walk(&before, 1);
 }
 
 #[test]

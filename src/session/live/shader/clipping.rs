@@ -1,0 +1,30 @@
+//! Marks on what a screen cannot show, if they are wanted.
+
+use std::sync::Arc;
+
+use super::Shader;
+use crate::film::clipping::mark;
+use crate::film::develop::Development;
+use crate::session::live::Marked;
+
+impl Shader {
+    /// Marks clipped pixels in what is shown from now on, or no longer.
+    pub(super) fn mark_clipped(&mut self, on: bool) {
+        self.marks = on;
+        if let Some(product) = &mut self.product {
+            product.mark_clipped(on);
+        }
+        self.show();
+    }
+
+    /// What is shown, with marks, if they are wanted.
+    pub(super) fn marked(&mut self) -> Option<Marked> {
+        let shown = self.preview.as_ref().map(|p| &p.session).or(self.whole.as_ref());
+        let session = shown.filter(|_| self.marks)?;
+        session.develop_film(&mut self.film);
+        let mut frame = Arc::new(session.frame().clone());
+        let development = Development::of(&session.scene().picture);
+        let clipped = mark(&self.film, development, Arc::make_mut(&mut frame));
+        Some(Marked { frame, clipped })
+    }
+}

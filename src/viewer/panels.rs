@@ -1,0 +1,113 @@
+//! The panels around the picture: where each lies, how large it is, and whether it shows.
+
+use eframe::egui::{Context, Panel, Response};
+
+use super::app::App;
+use crate::document::arrangement::{Arrangement, Part};
+
+/// What is remembered of the panels while the window is open.
+pub(super) struct Panels {
+    /// Whether the list of what the scene holds shows.
+    pub(super) outline: bool,
+    /// Whether the parameters of what is selected show.
+    pub(super) inspector: bool,
+    /// Whether the status line shows.
+    pub(super) status: bool,
+    /// The sizes that were dragged; whether panels show is said elsewhere.
+    given: Arrangement,
+    /// Sizes in the latest turn in which each showed, in points.
+    seen: [f32; Part::ALL.len()],
+    /// How often the layout was reset: panels of another round forget their sizes.
+    round: u32,
+}
+
+impl Panels {
+    /// Panels as they were left.
+    pub(super) fn new(left: &Arrangement) -> Panels {
+        Panels {
+            outline: left.shows(Part::Outline),
+            inspector: left.shows(Part::Inspector),
+            status: left.shows(Part::Status),
+            given: left.clone(),
+            seen: [0.0; Part::ALL.len()],
+            round: 0,
+        }
+    }
+
+    /// A panel in its place.
+    pub(super) fn panel(&self, part: Part) -> Panel {
+        let (name, first, least) = match part {
+            Part::Outline => ("outline", 180.0, 120.0),
+            Part::Inspector => ("inspector", 440.0, 380.0),
+            Part::Status => ("status", 0.0, 0.0),
+            Part::Mixer => ("mixer", 130.0, 60.0),
+            Part::Looks => ("strip", 0.0, 0.0),
+            Part::Chart => ("chart", 300.0, 120.0),
+            Part::Mass => ("mass", 260.0, 120.0),
+            Part::Pixel => ("pixel", 270.0, 140.0),
+        };
+        let id = (name, self.round);
+        let panel = match part {
+            Part::Outline => Panel::left(id),
+            Part::Inspector => Panel::right(id),
+            _ => Panel::bottom(id),
+        };
+        if first == 0.0 {
+            return panel.resizable(false);
+        }
+        let size = self.given.size(part).map_or(first, |points| points as f32);
+        panel.resizable(true).default_size(size).min_size(least)
+    }
+
+    /// Looks at a panel that was shown: a size that changed under a pressed pointer was dragged.
+    pub(super) fn note(&mut self, part: Part, shown: &Response) {
+        let size = match part {
+            Part::Outline | Part::Inspector => shown.rect.width(),
+            _ => shown.rect.height(),
+        };
+        let seen = std::mem::replace(&mut self.seen[part as usize], size);
+        let dragged = shown.ctx.input(|i| i.pointer.any_down() || i.pointer.any_released());
+        if dragged && seen != 0.0 && seen != size {
+            self.given.set_size(part, size.round() as u32);
+        }
+    }
+}
+
+impl App {
+    /// What says whether a panel shows.
+    pub(super) fn open_flag(&mut self, part: Part) -> &mut bool {
+        match part {
+            Part::Outline => &mut self.panels.outline,
+            Part::Inspector => &mut self.panels.inspector,
+            Part::Status => &mut self.panels.status,
+            Part::Mixer => &mut self.mixer.open,
+            Part::Looks => &mut self.strip.open,
+            Part::Chart => &mut self.chart.open,
+            Part::Mass => &mut self.mass.open,
+            Part::Pixel => &mut self.pixel.open,
+        }
+    }
+
+    /// Shows the panels that were open when the window was closed.
+    pub(super) fn take_layout(&mut self) {
+        let left = self.settings.arrangement.clone();
+        Part::ALL.into_iter().for_each(|part| *self.open_flag(part) = left.shows(part));
+    }
+
+    /// Every panel as it was at first.
+    pub(super) fn reset_layout(&mut self) {
+        let round = self.panels.round + 1;
+        self.panels = Panels { round, ..Panels::new(&Arrangement::default()) };
+        Part::ALL.into_iter().for_each(|part| *self.open_flag(part) = part.shows_at_first());
+    }
+
+    /// Writes the layout to the settings when it is another one, not while it is being dragged.
+    pub(super) fn remember_layout(&mut self, ctx: &Context) {
+        let mut now = self.panels.given.clone();
+        Part::ALL.into_iter().for_each(|part| now.set_shows(part, *self.open_flag(part)));
+        if now != self.settings.arrangement && !ctx.input(|i| i.pointer.any_down()) {
+            self.settings.arrangement = now;
+            self.remember_settings();
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Panels: hidden, made larger, brought back, and remembered.
+
+use super::*;
+use crate::faces::SCENE;
+
+/// A command's key, what shows while its panel does.
+const PANELS: [(Key, &str); 2] = [(Key::O, "fill"), (Key::N, "ambient_light")];
+
+impl Window {
+    /// The same folder in another window.
+    fn again(self) -> Window {
+        let Window { harness, folder } = self;
+        let path = folder.path().join("scene.toml");
+        drop(harness);
+        let mut window = Window::in_folder(folder, Some(path.clone()), Vec::new());
+        window.until("the scene is open", |app| app.document().path() == Some(&path));
+        window.until_exact();
+        window
+    }
+
+    fn view(&self) -> Rect {
+        self.rect(Role::Image, "picture")
+    }
+
+    fn settings_text(&self) -> String {
+        std::fs::read_to_string(self.file("config/settings.toml")).unwrap_or_default()
+    }
+}
+
+#[test]
+fn panels_are_hidden_by_keys_and_by_the_menu_and_the_picture_takes_their_place() {
+    let mut window = Window::with_scene(SCENE, Vec::new());
+    let all = window.view();
+    for (key, text) in PANELS {
+        assert!(window.shows(text), "{text}");
+        let before = window.view();
+        window.key(Modifiers::NONE, key);
+        assert!(!window.shows(text), "{text}");
+        assert!(window.view().width() > before.width() + 100.0);
+    }
+    window.menu(&["View", "Status line"]);
+    assert!(!window.shows("exact"));
+    assert!(window.view().height() > all.height());
+    window.menu(&["View", "Reset layout"]);
+    window.harness.run_steps(3);
+    assert_eq!(window.view(), all);
+    assert!(window.shows("exact"));
+}
+
+#[test]
+fn a_name_is_changed_in_the_list_that_was_hidden() {
+    let mut window = Window::with_scene(SCENE, Vec::new());
+    window.click("fill");
+    window.key(Modifiers::NONE, Key::O);
+    assert!(!window.shows("mirror"));
+    window.key(Modifiers::NONE, Key::F2);
+    window.harness.run_steps(3);
+    assert!(window.shows("mirror"));
+    assert!(
+        window.harness.query_by_role_and_label(Role::TextInput, "name of light fill").is_some()
+    );
+}
+
+#[test]
+fn sizes_and_hidden_panels_are_remembered_until_the_layout_is_reset() {
+    let mut window = Window::with_scene(SCENE, Vec::new());
+    let first = window.view();
+    assert_eq!(window.settings_text(), "", "nothing was changed yet");
+    let edge = first.left_center();
+    window.drag(edge, edge + vec2(70.0, 0.0));
+    let wide = window.view();
+    assert!((wide.left() - first.left() - 70.0).abs() < 5.0, "{first} {wide}");
+    window.key(Modifiers::NONE, Key::N);
+    window.key(Modifiers::NONE, Key::L);
+    window.harness.run_steps(3);
+    let left = window.view();
+    assert!(window.settings_text().contains("inspector = { shows = false }"));
+    let text = window.settings_text();
+    assert!(
+        text.contains("mixer = { shows = true }") && text.contains("outline = { size ="),
+        "{text}"
+    );
+
+    let mut window = window.again();
+    assert!((window.view().left() - left.left()).abs() <= 1.0, "{} {left}", window.view());
+    assert_eq!(window.view().bottom(), left.bottom());
+    assert!(!window.shows("ambient_light") && window.shows("fill"));
+    window.menu(&["View", "Reset layout"]);
+    window.harness.run_steps(3);
+    assert_eq!(window.view(), first);
+    assert!(!window.settings_text().contains("[layout]"));
+    assert_eq!(window.again().view(), first);
+}
+
+#[test]
+fn colours_and_size_of_text_are_commands() {
+    let mut window = Window::with_scene(SCENE, Vec::new());
+    let is_dark = |window: &Window| window.harness.ctx.theme() == eframe::egui::Theme::Dark;
+    for (name, dark) in [("Dark colours", true), ("Light colours", false)] {
+        window.menu(&["View", "Colours", name]);
+        assert_eq!(is_dark(&window), dark);
+    }
+    assert!(window.settings_text().contains("theme = \"light\""));
+    window.menu(&["View", "Size of text", "Size of text 125 %"]);
+    window.harness.run_steps(3);
+    assert_eq!(window.harness.ctx.zoom_factor(), 1.25);
+    assert!(window.settings_text().contains("zoom_percent = 125"));
+}
