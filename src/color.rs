@@ -99,7 +99,7 @@ pub fn linear_of_srgb(code: f64) -> f32 {
 /// The sRGB code, 0 … 1, of linear light (IEC 61966-2-1), exactly; what lies outside of 0 … 1 is cut,
 /// and NaN gives 0. Undoes [`linear_of_srgb`] to the rounding of its `f32`.
 pub fn srgb_of_linear(linear: f64) -> f64 {
-    let x = linear.max(0.0).min(1.0);
+    let x = if linear.is_nan() { 0.0 } else { linear.clamp(0.0, 1.0) };
     if x <= 0.003_130_8 { x * 12.92 } else { 1.055 * libm::pow(x, 1.0 / 2.4) - 0.055 }
 }
 

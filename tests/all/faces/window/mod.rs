@@ -3,6 +3,7 @@
 mod camera;
 mod card;
 mod chart;
+mod controls;
 mod costs;
 mod diagnostics;
 mod edits;

@@ -1,6 +1,6 @@
 //! Every control has a name and a tooltip: a walk over all that can be pressed, dragged or typed into.
 
-use eframe::egui::{Button, Checkbox, MissingGlyphPolicy, Order, Slider, Ui};
+use eframe::egui::{Button, Checkbox, Order, Slider, Ui};
 
 use super::*;
 use crate::faces::SCENE;
@@ -255,17 +255,33 @@ fn every_item_of_the_menu_of_a_line_has_a_name_and_a_tooltip() {
 }
 
 #[test]
-fn every_control_of_the_colour_picker_has_a_name() {
+fn every_control_of_the_colour_picker_has_a_name_and_a_tooltip() {
+    let mut window = tall();
+    for (line, swatch, least) in [("mirror", "color", 9), ("key", "color", 11)] {
+        window.click(line);
+        let before = window.controls();
+        let swatch = window.rect(Role::ColorWell, swatch).center();
+        window.click_at(swatch, Modifiers::NONE);
+        window.walk(&before, least);
+        window.key(Modifiers::NONE, Key::Escape);
+    }
+}
+
+#[test]
+fn every_item_of_the_menu_of_a_value_has_a_name_and_a_tooltip() {
     let mut window = tall();
     window.click("mirror");
-    let before = window.controls().len();
-    // The picker is egui's own; the sign on its copy button stands in none of its usual fonts.
-    window.harness.ctx.set_missing_glyph_policy(MissingGlyphPolicy::Tofu);
-    let swatch = window.rect(Role::ColorWell, "color").center();
-    window.click_at(swatch, Modifiers::NONE);
-    assert!(window.controls().len() >= before + 4, "the picker is open");
-    let nameless = window.harness.unnamed_widgets();
-    assert!(nameless.is_empty(), "{nameless:#?}");
+    let before = window.controls();
+    for (role, name, least) in [
+        (Role::Slider, "diffuse", 4),
+        (Role::SpinButton, "ior value", 4),
+        (Role::ColorWell, "color", 5),
+    ] {
+        let at = window.rect(role, name).center();
+        window.right_click_at(at);
+        window.walk(&before, least);
+        window.key(Modifiers::NONE, Key::Escape);
+    }
 }
 
 #[test]
