@@ -9,6 +9,7 @@ use eframe::egui::{
 
 use super::app::App;
 use super::picture::Beside;
+use super::slider::has_keyboard;
 use crate::film::Frame;
 use crate::scene::Scene;
 use crate::session::live::{Glance, Shown, Stage};
@@ -232,7 +233,8 @@ impl App {
 
 /// Whether Space is held, and not for a widget.
 fn is_space_held(ctx: &Context) -> bool {
-    !ctx.egui_wants_keyboard_input() && ctx.input(|i| i.key_down(Key::Space))
+    let free = !ctx.egui_wants_keyboard_input() || has_keyboard(ctx);
+    free && ctx.input(|i| i.key_down(Key::Space))
 }
 
 /// Light text on dark ground, which reads over every picture.

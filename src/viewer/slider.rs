@@ -216,7 +216,12 @@ impl Slider<'_> {
             let line = [pos2(at, rail.rect.top()), pos2(at, middle - 4.0)];
             painter.line_segment(line, Stroke::new(1.5, visuals.weak_text_color()));
         }
-        let look = ui.style().interact(response);
+        // The keyboard shows as a ring: only a held handle looks held.
+        let look = match (response.is_pointer_button_down_on(), response.hovered()) {
+            (true, _) => &visuals.widgets.active,
+            (false, true) => &visuals.widgets.hovered,
+            (false, false) => &visuals.widgets.inactive,
+        };
         let radius = rail.radius() + look.expansion;
         let stroke = match response.has_focus() {
             true => Stroke::new(2.0, visuals.selection.stroke.color),
