@@ -115,7 +115,8 @@ fn a_card_marks_the_clipped_pixels_of_the_cpu() {
             let development = Development::of(&session.scene().picture);
             let mut frame = session.frame().clone();
             let clipped = clipping::mark(&session.film(), development, &mut frame);
-            let expected = *tone == "none" && exposure == "2.5";
+            // A highlight may be brighter than white at any exposure; the tone curve takes it back.
+            let expected = *tone == "none";
             assert_eq!(clipped.over > 0, expected, "{tone} {exposure}: {clipped:?}");
             let (transport, values) = (session.transport(), &session.terms().values);
             product.mark_clipped(true);

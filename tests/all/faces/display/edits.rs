@@ -63,7 +63,7 @@ fn a_dragged_slider_changes_the_picture_its_row_the_status_and_the_marks_alone()
         assert!(!changed.is_empty(), "nothing changed in {place:?}");
     }
     let undo = twin.app().document().undo_name().expect("a step").to_owned();
-    assert!(undo.starts_with("diffuse of mirror 0.30 → "), "{undo}");
+    assert!(undo.starts_with("diffuse of mirror 0.3 → "), "{undo}");
 
     desk.press("ctrl+z");
     desk.until("undo gives back the same picture", |desk| {

@@ -72,6 +72,8 @@ fn a_window_whose_graphics_card_is_lost_opens_again_with_all_that_was_done() {
     std::fs::write(desk.file("lost"), "").unwrap();
     let second = desk.show_window(first);
     assert_ne!(Some(second), first);
+    // No widget of the new window has the keyboard yet.
+    twin.press(Key::Escape);
     // It tells what happened at the picture's lower edge; all else is as it was.
     let mut upper = Rect::from_min_max(Pos2::ZERO, status_line().right_top());
     *upper.bottom_mut() -= 80.0;
@@ -105,6 +107,7 @@ fn a_card_that_is_lost_in_the_middle_of_a_turn_costs_no_work_either() {
     std::fs::write(&begun, "late").unwrap();
     std::fs::rename(begun, lost).unwrap();
     desk.show_window(first);
+    twin.press(Key::Escape);
     let mut upper = Rect::from_min_max(Pos2::ZERO, status_line().right_top());
     *upper.bottom_mut() -= 80.0;
     desk.until_part_like(&mut twin, upper, "everything is there again");
