@@ -81,6 +81,10 @@
 //! * **Widgets write into a clone of the scene**; what differs is one step of the document's history
 //!   and one wish to the session. The inspector visits the same list of fields as the reader and the
 //!   writer of scene files: a parameter without a control cannot be written.
+//! * **Examples** are texts in the program. One is opened as a copy without a file; what is traced of it goes
+//!   to the cache folder, once, so that it opens without a ray from then on. Nothing in that folder is missed.
+//! * **Files change on disk.** A thread looks at those of the document. What another program writes is a step
+//!   of the history like any other; meshes and images are not in the history, which only names them.
 //! * **The text belongs to the person.** A document keeps the text of its file and changes single
 //!   values in it; whatever is written is read back and compared bit for bit first.
 //! * **Looks** are differences by path. A [`Scene`](scene::Scene)'s values are those that show, with the

@@ -71,12 +71,12 @@ impl Example {
     /// the cache folder first, if they are not there.
     pub fn open(&self, cache: &Path) -> Result<Document, DocumentError> {
         let root = folder(cache);
+        let place = root.join("scenes").join(self.name).with_extension("toml");
         for (name, bytes) in FILES.iter().filter(|(name, _)| self.text.contains(name)) {
             write_if_other(&root.join(name), bytes)?;
+            // The way from the scene to its files leads through its folder.
+            std::fs::create_dir_all(folder_of(&place)).map_err(DocumentError::new)?;
         }
-        let place = root.join("scenes").join(self.name).with_extension("toml");
-        // The way from the scenes to the files leads through it.
-        std::fs::create_dir_all(folder_of(&place)).map_err(DocumentError::new)?;
         let scene = read::text(self.text, &place).map_err(DocumentError::new)?;
         let mut document = Document::of(self.title, self.text, scene);
         let mut copy = document.scene().clone();

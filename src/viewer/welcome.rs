@@ -20,6 +20,8 @@ const PICTURE: Vec2 = vec2(144.0, 81.0);
 #[derive(Default)]
 pub(super) struct Welcome {
     open: bool,
+    /// Whether there was unsaved work when it was opened.
+    over_work: bool,
     recent: Vec<Recent>,
     examples: Vec<TextureHandle>,
 }
@@ -125,7 +127,7 @@ impl App {
     /// Opens the welcome.
     pub(super) fn open_welcome(&mut self, ctx: &Context) {
         self.welcome.close();
-        self.welcome.open = true;
+        (self.welcome.open, self.welcome.over_work) = (true, self.document.is_unsaved());
         let cache = &self.files.folders.cache;
         for (number, path) in self.settings.recent.iter().enumerate().filter(|(_, p)| p.is_file()) {
             let thumb = std::fs::read(thumb_of(cache, path)).ok();
@@ -134,7 +136,7 @@ impl App {
         }
     }
 
-    /// Shows the welcome, if it is open. It goes by itself once there is work, and with Escape.
+    /// Shows the welcome, if it is open. It goes by itself once work begins, and with Escape.
     pub(super) fn welcome_ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
         if !self.welcome.open {
             return;
@@ -144,13 +146,15 @@ impl App {
             self.files.is_modal() || ctx.egui_wants_keyboard_input() || Popup::is_any_open(&ctx);
         let escaped = !busy && ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape));
         // Not while a gesture lasts: nothing may move under the pointer.
-        let begun = self.document.is_unsaved() && !ctx.input(|i| i.pointer.any_down());
+        let is_new = self.document.is_unsaved() && !self.welcome.over_work;
+        let begun = is_new && !ctx.input(|i| i.pointer.any_down());
         if escaped || begun {
             return self.welcome.close();
         }
         self.welcome.load(&ctx);
         let mut closed = false;
-        let panel = Panel::bottom("welcome").resizable(true).default_size(276.0).min_size(120.0);
+        let height = (0.4 * ui.available_height()).clamp(120.0, 276.0);
+        let panel = Panel::bottom("welcome").resizable(true).default_size(height).min_size(120.0);
         panel.show(ui, |ui| {
             closed = self.welcome_head_ui(ui, commands);
             commands.extend(self.welcome.cards_ui(ui));
