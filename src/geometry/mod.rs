@@ -6,6 +6,7 @@
 //! no epsilon with a length in it: a ray that leaves a surface knows which one ([`Leaving`]).
 
 mod all_hits;
+mod beam;
 mod binary;
 mod bump;
 mod closed;

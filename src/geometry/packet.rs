@@ -6,11 +6,11 @@
 
 use fearless_simd::{Simd, prelude::*};
 
+use super::beam::Beam;
 use super::compile::Primitives;
 use super::hierarchy::Frame;
 use super::lanes::{Floats, Lanes, Width};
 use super::shear::point;
-use super::traverse::Beam;
 
 /// Half an ulp of 1 in f32, times sixteen: more than twice the sum of all roundings in a test.
 const MARGIN: f32 = 16.0 * (f32::EPSILON / 2.0);
@@ -142,23 +142,18 @@ where
 {
     /// A bit for every sphere that the beam may meet up to `limit`.
     #[inline(always)]
-    pub(super) fn candidates<S: Simd>(
-        &self,
-        simd: S,
-        beam: &Beam<S, N>,
-        limit: Floats<S, N>,
-    ) -> u32 {
+    pub(super) fn candidates<S: Simd>(&self, simd: S, beam: &Beam, limit: Floats<S, N>) -> u32 {
         let [x, y, z] = load3(simd, &self.center);
-        let [ox, oy, oz] = beam.origin;
+        let [ox, oy, oz] = beam.origin(simd);
         let (x, y, z) = (x - ox, y - oy, z - oz);
-        let [dx, dy, dz] = beam.direction;
+        let [dx, dy, dz] = beam.direction(simd);
         let along = x.mul_add(dx, y.mul_add(dy, z * dz));
         // From the centre to the line.
         let (lx, ly, lz) = (along.mul_sub(dx, x), along.mul_sub(dy, y), along.mul_sub(dz, z));
         let off2 = lx.mul_add(lx, ly.mul_add(ly, lz * lz));
         let radius = load(simd, &self.radius);
         // Error of any position or distance above: the ray's, the centre's, and the arithmetic's.
-        let error = (x.abs() + y.abs() + z.abs() + radius + beam.size) * MARGIN;
+        let error = (x.abs() + y.abs() + z.abs() + radius + beam.size()) * MARGIN;
         let reach = radius + error;
         let half2 = reach.mul_sub(reach, off2);
         // The entry is no nearer than along − √half2 − error, the exit no farther than along + reach.
@@ -185,13 +180,8 @@ where
     /// A bit for every triangle that the beam may meet up to `limit` (Möller and Trumbore's numbers,
     /// undivided).
     #[inline(always)]
-    pub(super) fn candidates<S: Simd>(
-        &self,
-        simd: S,
-        beam: &Beam<S, N>,
-        limit: Floats<S, N>,
-    ) -> u32 {
-        let ([dx, dy, dz], [ox, oy, oz]) = (beam.direction, beam.origin);
+    pub(super) fn candidates<S: Simd>(&self, simd: S, beam: &Beam, limit: Floats<S, N>) -> u32 {
+        let ([dx, dy, dz], [ox, oy, oz]) = (beam.direction(simd), beam.origin(simd));
         let [cx, cy, cz] = load3(simd, &self.corner);
         let (ax, ay, az) = (ox - cx, oy - cy, oz - cz);
         let [px, py, pz] = load3(simd, &self.edges[0]);
@@ -204,7 +194,7 @@ where
         let v = by_sign(dx.mul_add(fx, dy.mul_add(fy, dz * fz)), det);
         let t = by_sign(qx.mul_add(fx, qy.mul_add(fy, qz * fz)), det);
         let det = det.abs();
-        let error = load(simd, &self.margin) * (ax.abs() + ay.abs() + az.abs() + beam.size);
+        let error = load(simd, &self.margin) * (ax.abs() + ay.abs() + az.abs() + beam.size());
         let t_error = error * load(simd, &self.size);
         let zero = Floats::<S, N>::splat(simd, 0.0);
         let low = zero - error;

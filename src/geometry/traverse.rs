@@ -4,10 +4,9 @@ use std::cell::RefCell;
 
 use fearless_simd::{Level, Simd, prelude::*};
 
-use glam::DVec3;
-
+use super::beam::Beam;
 use super::compile::Kind;
-use super::hierarchy::{Frame, STACK, Stack};
+use super::hierarchy::{STACK, Stack};
 use super::lanes::{self, Floats, Lanes, Width};
 use super::motion::Moment;
 use super::primitive::{Form, Roots, Start};
@@ -15,37 +14,6 @@ use super::query::Query;
 use super::shear::Shear;
 use super::wide::{Child, Node, Target, Wide};
 use super::{Geometry, Leaving, Ray};
-
-/// Direction components are kept at least this far from zero: over the few units that a ray has in
-/// the frame, the change is far below the boxes' padding.
-const LEAST_COMPONENT: f64 = 1e-12;
-
-/// Padding of the boxes relative to the coordinates: eight half ulps, more than all roundings of a
-/// box test together.
-const PADDING: f64 = 8.0 * (f32::EPSILON as f64 / 2.0);
-
-/// The ray in the hierarchy's frame, in f32, with every lane the same.
-pub(super) struct Beam<S: Simd, const N: usize>
-where
-    Lanes<N>: Width,
-{
-    /// Moved along the ray to the surroundings of the scene.
-    pub(super) origin: [Floats<S, N>; 3],
-    /// Unit up to rounding.
-    pub(super) direction: [Floats<S, N>; 3],
-    /// 1 + the sum of the origin's components: no coordinate met on the way is larger.
-    pub(super) size: Floats<S, N>,
-    reciprocal: [Floats<S, N>; 3],
-    /// (origin ± padding) · reciprocal, for the nearer and the farther plane.
-    near: [Floats<S, N>; 3],
-    far: [Floats<S, N>; 3],
-    /// Per axis: which plane of a box is the nearer one.
-    nearer: [usize; 3],
-    start: f64,
-    scale: f64,
-    /// The `t` in the frame beyond which there is nothing.
-    longest: f32,
-}
 
 /// What a leaf needs beside the packet.
 #[derive(Clone, Copy)]
@@ -82,63 +50,6 @@ pub(super) struct Departure {
     mesh: (u32, u32),
     /// Whether the mesh is closed.
     closed: bool,
-}
-
-impl<S: Simd, const N: usize> Beam<S, N>
-where
-    Lanes<N>: Width,
-{
-    #[inline(always)]
-    fn new(simd: S, frame: &Frame, ray: &Ray) -> Beam<S, N> {
-        let (o, d) = (frame.local(ray.origin), ray.direction);
-        // The frame's content is within √3 < 2 of its origin: skip the way to the ball of radius 2.
-        let start = (-o.dot(d) - 2.0).max(0.0);
-        let moved = o + d * start;
-        let size = 1.0 + moved.abs().element_sum();
-        // f64 roundings count once the origin is very far away.
-        let padding = PADDING * size + o.abs().element_sum() * 1e-14;
-        let away = DVec3::new(away(d.x), away(d.y), away(d.z));
-        let r = away.recip();
-        let at = moved * r;
-        let margin = r.abs() * padding;
-        let nearer = [usize::from(r.x < 0.0), usize::from(r.y < 0.0), usize::from(r.z < 0.0)];
-        Beam {
-            origin: splat3(simd, moved),
-            direction: splat3(simd, d),
-            size: Floats::<S, N>::splat(simd, (size + o.abs().element_sum() * 1e-9) as f32),
-            reciprocal: splat3(simd, r),
-            near: splat3(simd, at + margin),
-            far: splat3(simd, at - margin),
-            nearer,
-            start: start / frame.scale,
-            scale: frame.scale,
-            longest: (2.0 * size + 4.0) as f32,
-        }
-    }
-
-    /// A world `t` in the frame, rounded up.
-    #[inline(always)]
-    fn limit(&self, t: f64) -> f32 {
-        let local = ((t - self.start) * self.scale) as f32;
-        (local + (local.abs() * 1e-6 + 1e-30)).min(self.longest)
-    }
-
-    /// The children of a node that the ray may meet up to `limit`, and how far away each is at least.
-    #[inline(always)]
-    fn meet(&self, simd: S, node: &Node<N>, limit: Floats<S, N>) -> (u32, Floats<S, N>) {
-        let ([x, y, z], [nx, ny, nz]) = (&node.bounds, self.nearer);
-        let ([rx, ry, rz], [ox, oy, oz], [px, py, pz]) = (self.reciprocal, self.near, self.far);
-        let load = |plane| Floats::<S, N>::from_slice(simd, plane);
-        let near_x = load(&x[nx & 1]).mul_sub(rx, ox);
-        let near_y = load(&y[ny & 1]).mul_sub(ry, oy);
-        let near_z = load(&z[nz & 1]).mul_sub(rz, oz);
-        let far_x = load(&x[!nx & 1]).mul_sub(rx, px);
-        let far_y = load(&y[!ny & 1]).mul_sub(ry, py);
-        let far_z = load(&z[!nz & 1]).mul_sub(rz, pz);
-        let near = near_x.max(near_y).max(near_z.max(0.0));
-        let far = far_x.min(far_y).min(far_z.min(limit));
-        (near.simd_le(far).to_bitmask() as u32, near)
-    }
 }
 
 impl Geometry {
@@ -199,7 +110,7 @@ impl Geometry {
         Lanes<N>: Width,
     {
         let Some(root) = wide.root else { return };
-        let beam = Beam::<S, N>::new(simd, &self.hierarchy.frame, walk.ray);
+        let beam = Beam::new(simd, &self.hierarchy.frame, walk.ray);
         let mut limit = beam.limit(query.limit());
         let mut limits = Floats::<S, N>::splat(simd, limit);
         let mut top = 0;
@@ -207,13 +118,13 @@ impl Geometry {
         loop {
             if current.target() == Target::Node {
                 let node = &wide.nodes[current.index()];
-                let (mask, near) = beam.meet(simd, node, limits);
+                let (mask, near) = in_memory(&beam).meet(simd, node, limits);
                 if mask != 0 {
                     current = next_child::<S, Q, N>(node, mask, near, entries, &mut top);
                     continue;
                 }
             } else {
-                self.leaf(simd, (wide, current), &beam, limits, walk, query);
+                self.leaf(simd, (wide, current), in_memory(&beam), limits, walk, query);
                 if query.is_done() {
                     return;
                 }
@@ -242,7 +153,7 @@ impl Geometry {
         &self,
         simd: S,
         (wide, leaf): (&Wide<N>, Child),
-        beam: &Beam<S, N>,
+        beam: &Beam,
         limits: Floats<S, N>,
         walk: &Walk<'_>,
         query: &mut Q,
@@ -420,18 +331,11 @@ impl Departure {
     }
 }
 
-/// A direction component kept away from zero.
+/// The beam, of which nothing is loaded ahead: spread over vectors before the walk, its numbers would
+/// only be spilled.
 #[inline(always)]
-fn away(component: f64) -> f64 {
-    component.abs().max(LEAST_COMPONENT).copysign(component)
-}
-
-#[inline(always)]
-fn splat3<S: Simd, const N: usize>(simd: S, v: DVec3) -> [Floats<S, N>; 3]
-where
-    Lanes<N>: Width,
-{
-    v.to_array().map(|x| Floats::<S, N>::splat(simd, x as f32))
+fn in_memory(beam: &Beam) -> &Beam {
+    std::hint::black_box(beam)
 }
 
 /// Offers the crossings with `t > 0`; only the first one unless the query wants all.
