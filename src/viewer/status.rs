@@ -35,7 +35,13 @@ pub(super) fn status_ui(
                 if ui.button("Trace now").on_hover_text(Command::Resume.about()).clicked() {
                     command = Some(Command::Resume);
                 }
-                ui.label("stopped: the picture shows the scene before the last change");
+                let text = match shown.map(|shown| shown.stage) {
+                    Some(Stage::Whole) => {
+                        "stopped: the picture shows the scene before the last change"
+                    }
+                    _ => "stopped before the picture was whole",
+                };
+                ui.label(text);
             }
             None => {
                 if let Some(last) = &status.last {
