@@ -277,12 +277,12 @@ impl Grower<'_> {
             || aimed(surface.reflect(), (gloss, up), sample, ways[0]),
         );
         // There is a ray: only a file can say of a total reflection that it is none.
-        let sharp = surface.refracted.unwrap_or(from.ray.direction);
+        let sharp = || surface.refracted().unwrap_or(from.ray.direction);
         let transmitted = self.next(
             from,
             (Kind::Transmit, at.material, passed),
             (ends.transmitted(), to_passed),
-            || aimed(sharp, (translucency, -up), sample, ways[1]),
+            || aimed(sharp(), (translucency, -up), sample, ways[1]),
         );
         let of = |branch: fn(&Next) -> Branch| {
             Ends::new(branch(&reflected), branch(&transmitted), ends.total()).found(searched)

@@ -363,8 +363,7 @@ impl<'a> Grower<'a> {
         };
         worker.rays.lost += u64::from(crossing.lost);
         let eta = crossing.eta(&self.iors);
-        let refracted = surface.refract(eta);
-        (surface.contrast, surface.refracted) = (crossing.contrast(&self.iors), refracted);
+        surface.between(eta, crossing.contrast(&self.iors));
         let touching = found.is_some_and(|found| found.touching);
         let searched = found.is_some();
         Arrival { at, length, tone, surface, crossing, touching, searched, eta }
@@ -387,7 +386,7 @@ impl<'a> Grower<'a> {
         let by = weights(fresnel);
         let Branches { followed, directions } =
             self.branches(worker.sample, from, (&at, &surface), by);
-        let total = surface.refracted.is_none();
+        let total = surface.is_total();
         let [reflected, transmitted] = followed.each_ref().map(branch);
         let transmitted = if total { Branch::Absent } else { transmitted };
         let ends = Ends::new(reflected, transmitted, total).found(searched);
@@ -471,14 +470,15 @@ impl<'a> Grower<'a> {
         [mirrored, passed]: [f32; 2],
     ) -> Branches {
         let follow = |kind, by: f32| self.follow(from, (kind, at.material), by * from.geometric);
-        let mut followed = match surface.refracted {
-            None => [follow(Kind::TotalReflect, mirrored), Err(End::Zero)],
-            Some(_) => [follow(Kind::Reflect, mirrored), follow(Kind::Transmit, passed)],
+        let mut followed = match surface.is_total() {
+            true => [follow(Kind::TotalReflect, mirrored), Err(End::Zero)],
+            false => [follow(Kind::Reflect, mirrored), follow(Kind::Transmit, passed)],
         };
-        let mut directions = [None, surface.refracted];
+        let through = if followed[1].is_ok() { surface.refracted() } else { None };
+        let mut directions = [None, through];
         let lobes = self.lobes[at.solid as usize];
         if lobes != SHARP {
-            let (up, sharp) = (surface.geometric, [Some(surface.reflect()), surface.refracted]);
+            let (up, sharp) = (surface.geometric, [Some(surface.reflect()), through]);
             for (i, (up, transmitted)) in [(up, false), (-up, true)].into_iter().enumerate() {
                 if followed[i].is_ok() {
                     let way = branch_path(from.way, transmitted);
@@ -533,7 +533,7 @@ const SHARP: Lobes = [0.0; 2];
 struct Branches {
     /// Their weights, if they are followed.
     followed: [Result<PathWeight, End>; 2],
-    /// Where they go: the mirror ray's is known only of what blurs.
+    /// Where they go, if they are followed: the mirror ray's is known only of what blurs.
     directions: [Option<DVec3>; 2],
 }
 

@@ -101,11 +101,12 @@ impl Grower<'_> {
     /// What a light that shines onto the surface from behind shows of itself: none without Hall.
     #[inline(always)]
     fn behind(&self, material: u16, surface: &Surface, to_light: DVec3) -> Lobe {
-        match (self.models[material as usize], surface.refracted) {
-            (Model::Hall, Some(through)) if surface.geometric.dot(to_light) < 0.0 => {
+        let is_behind = surface.geometric.dot(to_light) < 0.0;
+        match self.models[material as usize] {
+            Model::Hall if is_behind => surface.refracted().map_or(Lobe::NONE, |through| {
                 let cosine = surface.normal.dot(surface.to_eye).min(1.0);
                 lobe::transmitted(through, to_light, (cosine, surface.contrast))
-            }
+            }),
             _ => Lobe::NONE,
         }
     }

@@ -21,8 +21,20 @@ pub(super) struct Surface {
     bumped: bool,
     /// Ratio of the indices in front and behind, for Fresnel's reflectance, once it is known.
     pub(super) contrast: f64,
-    /// Direction of the refracted ray, once it is known.
-    pub(super) refracted: Option<DVec3>,
+    /// Once the media are known.
+    refraction: Refraction,
+}
+
+/// What becomes of the refracted ray.
+#[derive(Clone, Copy)]
+enum Refraction {
+    /// It goes into a denser medium, for this index in front / index behind: nothing stops it. Its
+    /// direction is worked out if it is asked for: most surfaces let nothing pass.
+    Denser(f64),
+    /// It goes there.
+    Through(DVec3),
+    /// Total reflection: there is none.
+    Total,
 }
 
 impl Surface {
@@ -40,8 +52,35 @@ impl Surface {
             // Flattened to the horizon as the eye sees it.
             true => (smooth - to_eye * facing).try_normalize().unwrap_or(geometric),
         };
-        let (contrast, refracted, bumped) = (1.0, None, at.bumped);
-        Surface { normal, geometric, to_eye, entering, bumped, contrast, refracted }
+        let (contrast, refraction, bumped) = (1.0, Refraction::Total, at.bumped);
+        Surface { normal, geometric, to_eye, entering, bumped, contrast, refraction }
+    }
+
+    /// Says what is in front and behind: ratios of the indices of refraction, for Snell's law and for
+    /// Fresnel's.
+    #[inline(always)]
+    pub(super) fn between(&mut self, eta: f64, contrast: f64) {
+        self.contrast = contrast;
+        self.refraction = match eta < 1.0 {
+            true => Refraction::Denser(eta),
+            false => self.refract(eta).map_or(Refraction::Total, Refraction::Through),
+        };
+    }
+
+    /// Whether there is no refracted ray.
+    #[inline(always)]
+    pub(super) fn is_total(&self) -> bool {
+        matches!(self.refraction, Refraction::Total)
+    }
+
+    /// Direction of the refracted ray, if there is one.
+    #[inline(always)]
+    pub(super) fn refracted(&self) -> Option<DVec3> {
+        match self.refraction {
+            Refraction::Denser(eta) => self.refract(eta),
+            Refraction::Through(direction) => Some(direction),
+            Refraction::Total => None,
+        }
     }
 
     /// The least way out of the surface of a ray that goes on from a bump: flatter ones than the ray
@@ -54,9 +93,9 @@ impl Surface {
     /// Fresnel's reflectance of the ray that met it.
     #[inline(always)]
     pub(super) fn reflectance(&self) -> f64 {
-        match self.refracted {
-            Some(_) => lobe::fresnel(self.normal.dot(self.to_eye).min(1.0), self.contrast),
-            None => 1.0,
+        match self.is_total() {
+            false => lobe::fresnel(self.normal.dot(self.to_eye).min(1.0), self.contrast),
+            true => 1.0,
         }
     }
 
@@ -90,7 +129,7 @@ impl Surface {
     /// Direction of the refracted ray for `eta` = index in front / index behind, always below the
     /// geometric surface; `None` in total reflection. Snell's law in vector form (Heckbert 1989).
     #[inline(always)]
-    pub(super) fn refract(&self, eta: f64) -> Option<DVec3> {
+    fn refract(&self, eta: f64) -> Option<DVec3> {
         let through = |n: DVec3| {
             let c = n.dot(self.to_eye);
             let radicand = 1.0 - eta * eta * (1.0 - c * c);
@@ -155,6 +194,21 @@ mod tests {
             primitive: 0,
         };
         Surface::new(&at, -to_eye)
+    }
+
+    #[test]
+    fn into_what_is_denser_every_ray_goes() {
+        for (to_eye, bumped) in above().flat_map(|v| [(v, false), (v, true), (-v, true)]) {
+            for eta in [0.0, 1.0 / 2.42, 1.0 / 1.5, 1.0f64.next_down()] {
+                let mut surface = met(DVec3::new(0.6, 0.0, 0.8), to_eye, bumped);
+                surface.between(eta, eta);
+                assert!(!surface.is_total() && surface.refracted().is_some(), "{to_eye} {eta}");
+                assert_eq!(surface.refracted(), surface.refract(eta));
+            }
+        }
+        let mut flat = met(DVec3::Z, DVec3::new(0.8, 0.0, 0.6), false);
+        flat.between(1.5, 1.5);
+        assert!(flat.is_total() && flat.refracted().is_none());
     }
 
     #[test]
