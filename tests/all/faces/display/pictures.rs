@@ -7,16 +7,21 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Key, Pos2, pos2, vec2};
 
 use super::twin::Twin;
-use super::{Desk, SIZE};
+use super::{Desk, PATIENCE, SIZE};
 
 /// A screen that is the same for this long has come to rest.
 const REST: Duration = Duration::from_millis(1200);
 
 /// Waits until the screen has been the same for a while; not for ever, as a text cursor blinks.
 fn until_still(desk: &Desk) {
+    until_still_or(desk, 6 * REST);
+}
+
+/// The same with the longest time to wait.
+fn until_still_or(desk: &Desk, most: Duration) {
     let start = Instant::now();
     let (mut last, mut since) = (desk.server.shot(), start);
-    while since.elapsed() < REST && start.elapsed() < 6 * REST {
+    while since.elapsed() < REST && start.elapsed() < most {
         std::thread::sleep(Duration::from_millis(100));
         let shot = desk.server.shot();
         if shot != last {
@@ -90,7 +95,8 @@ const MOST_BYTES: u64 = 300_000;
 
 /// Puts what the screen shows into the README's pictures, once it has come to rest.
 fn put(desk: &Desk, name: &str) {
-    until_still(desk);
+    // Whole pictures only: progress moves on the screen.
+    until_still_or(desk, 5 * PATIENCE);
     let shot = desk.server.shot().keep(name);
     let target = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("assets/{name}.png"));
     std::fs::copy(shot, &target).unwrap();
