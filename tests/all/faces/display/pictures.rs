@@ -14,14 +14,9 @@ const REST: Duration = Duration::from_millis(1200);
 
 /// Waits until the screen has been the same for a while; not for ever, as a text cursor blinks.
 fn until_still(desk: &Desk) {
-    until_still_or(desk, 6 * REST);
-}
-
-/// The same with the longest time to wait.
-fn until_still_or(desk: &Desk, most: Duration) {
     let start = Instant::now();
     let (mut last, mut since) = (desk.server.shot(), start);
-    while since.elapsed() < REST && start.elapsed() < most {
+    while since.elapsed() < REST && start.elapsed() < 6 * REST {
         std::thread::sleep(Duration::from_millis(100));
         let shot = desk.server.shot();
         if shot != last {
@@ -93,10 +88,18 @@ fn the_window_in_all_sizes_zooms_and_themes() {
 /// Bytes of a picture of the README.
 const MOST_BYTES: u64 = 300_000;
 
+/// Waits until the cache folder holds a file: the picture is then exact.
+fn until_cached(desk: &Desk, folder: &str) {
+    let (folder, start) = (desk.file("cache/rayforest").join(folder), Instant::now());
+    while std::fs::read_dir(&folder).map_or(0, Iterator::count) == 0 {
+        assert!(start.elapsed() < 10 * PATIENCE, "nothing is in {}", folder.display());
+        std::thread::sleep(Duration::from_millis(100));
+    }
+}
+
 /// Puts what the screen shows into the README's pictures, once it has come to rest.
 fn put(desk: &Desk, name: &str) {
-    // Whole pictures only: progress moves on the screen.
-    until_still_or(desk, 5 * PATIENCE);
+    until_still(desk);
     let shot = desk.server.shot().keep(name);
     let target = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("assets/{name}.png"));
     std::fs::copy(shot, &target).unwrap();
@@ -109,13 +112,16 @@ fn put(desk: &Desk, name: &str) {
 fn the_pictures_of_the_readme() {
     let mut desk = Desk::new(SIZE);
     desk.start_with(&[]);
+    until_cached(&desk, concat!("examples/", env!("CARGO_PKG_VERSION")));
     put(&desk, "welcome");
     desk.kill();
     let scene = include_str!("../../../../scenes/whitted.toml");
     std::fs::write(desk.file("scene.toml"), scene).unwrap();
     desk.start();
-    let mut twin = Twin::new(&desk.file("scene.toml"), None);
-    until_still(&desk);
+    // The same window with a smaller picture, which is traced at once.
+    std::fs::write(desk.file("small.toml"), scene.replace("[1280, 720]", "[320, 180]")).unwrap();
+    let mut twin = Twin::new(&desk.file("small.toml"), None);
+    until_cached(&desk, "thumbnails");
     desk.click(twin.rect(Role::Button, "glass").center());
     desk.point(super::REST);
     put(&desk, "window");
