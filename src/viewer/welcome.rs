@@ -1,6 +1,7 @@
 //! The welcome: ways to begin, recent files and the examples, below the picture, which goes on by itself.
 
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 use eframe::egui::{
     Align, Color32, Context, FontId, Key, Layout, Modifiers, Panel, Popup, Rect, Response, Role,
@@ -16,6 +17,9 @@ use crate::document::examples::EXAMPLES;
 /// Size of a card's picture, in points.
 const PICTURE: Vec2 = vec2(144.0, 81.0);
 
+/// How long pictures are loaded in one turn.
+const TURN: Duration = Duration::from_millis(3);
+
 /// The welcome, and the pictures of its cards.
 #[derive(Default)]
 pub(super) struct Welcome {
@@ -23,7 +27,7 @@ pub(super) struct Welcome {
     /// Whether there was unsaved work when it was opened.
     over_work: bool,
     recent: Vec<Recent>,
-    examples: Vec<TextureHandle>,
+    examples: Vec<Option<TextureHandle>>,
 }
 
 /// A file that was open before and is still there.
@@ -50,12 +54,16 @@ impl Welcome {
         *self = Welcome::default();
     }
 
-    /// Loads one picture a turn, so that no turn takes long.
+    /// Loads pictures for a moment; what is left, in the next turn.
     fn load(&mut self, ctx: &Context) {
-        if let Some(example) = EXAMPLES.get(self.examples.len()) {
+        let begun = Instant::now();
+        while let Some(example) = EXAMPLES.get(self.examples.len()) {
+            if begun.elapsed() > TURN {
+                return ctx.request_repaint();
+            }
             // What is built in is a picture: a test reads them all.
-            self.examples.extend(texture(ctx, example.name, example.thumbnail));
-            ctx.request_repaint();
+            let thumb = texture(ctx, example.name, example.thumbnail);
+            self.examples.push(thumb);
         }
     }
 
@@ -73,7 +81,7 @@ impl Welcome {
                     }
                 }
                 for (i, example) in EXAMPLES.iter().enumerate() {
-                    let thumb = self.examples.get(i);
+                    let thumb = self.examples.get(i).and_then(Option::as_ref);
                     let about = format!("{}. Opens a copy of this example", example.about);
                     if (Card { label: example.title, about: &about, thumb }).ui(ui).clicked() {
                         chosen = Some(Command::Example(i));

@@ -7,7 +7,7 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Key, Pos2, pos2, vec2};
 
 use super::twin::Twin;
-use super::{Desk, SIZE};
+use super::{Desk, PATIENCE, SIZE};
 
 /// A screen that is the same for this long has come to rest.
 const REST: Duration = Duration::from_millis(1200);
@@ -88,6 +88,15 @@ fn the_window_in_all_sizes_zooms_and_themes() {
 /// Bytes of a picture of the README.
 const MOST_BYTES: u64 = 300_000;
 
+/// Waits until the cache folder holds a file: the picture is then exact.
+fn until_cached(desk: &Desk, folder: &str) {
+    let (folder, start) = (desk.file("cache/rayforest").join(folder), Instant::now());
+    while std::fs::read_dir(&folder).map_or(0, Iterator::count) == 0 {
+        assert!(start.elapsed() < 10 * PATIENCE, "nothing is in {}", folder.display());
+        std::thread::sleep(Duration::from_millis(100));
+    }
+}
+
 /// Puts what the screen shows into the README's pictures, once it has come to rest.
 fn put(desk: &Desk, name: &str) {
     until_still(desk);
@@ -103,13 +112,16 @@ fn put(desk: &Desk, name: &str) {
 fn the_pictures_of_the_readme() {
     let mut desk = Desk::new(SIZE);
     desk.start_with(&[]);
+    until_cached(&desk, concat!("examples/", env!("CARGO_PKG_VERSION")));
     put(&desk, "welcome");
     desk.kill();
     let scene = include_str!("../../../../scenes/whitted.toml");
     std::fs::write(desk.file("scene.toml"), scene).unwrap();
     desk.start();
-    let mut twin = Twin::new(&desk.file("scene.toml"), None);
-    until_still(&desk);
+    // The same window with a smaller picture, which is traced at once.
+    std::fs::write(desk.file("small.toml"), scene.replace("[1280, 720]", "[320, 180]")).unwrap();
+    let mut twin = Twin::new(&desk.file("small.toml"), None);
+    until_cached(&desk, "thumbnails");
     desk.click(twin.rect(Role::Button, "glass").center());
     desk.point(super::REST);
     put(&desk, "window");

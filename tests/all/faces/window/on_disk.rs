@@ -39,7 +39,7 @@ fn what_is_not_edited_here_is_loaded_at_once_and_undone_by_undo() {
     assert!(window.app().document().is_unsaved());
     // Saving does not ask: what is replaced was seen here.
     window.save();
-    assert_eq!(window.scene_text(), theirs().replace("0.25", "0.5"));
+    assert_eq!(window.scene_text(), SCENE.replace("reflect = 0.5", "reflect = 0.5 # by hand"));
 }
 
 #[test]
