@@ -305,7 +305,7 @@ impl App {
         if !self.panels.status {
             return;
         }
-        self.panels.panel(Part::Status).frame(bar).show(ui, |ui| {
+        self.panels.panel(ui, Part::Status).frame(bar).show(ui, |ui| {
             let status = self.live.status();
             commands.extend(status_ui(ui, &status, self.shown.as_ref(), self.clipped()));
         });
@@ -316,7 +316,7 @@ impl App {
         if !self.mixer.open {
             return None;
         }
-        let panel = self.panels.panel(Part::Mixer);
+        let panel = self.panels.panel(ui, Part::Mixer);
         let costs = self.live.costs();
         let known = MixerKnown { costs: &costs, saved: self.document.saved_scene() };
         let shown = panel.show(ui, |ui| self.mixer.ui(ui, &mut edited.lights, &known));
@@ -346,14 +346,14 @@ impl App {
         let mut lists = Lists { subject: self.subject(), renaming: &mut self.renaming };
         let mut listed = OutlineOutcome::default();
         if self.panels.outline {
-            let panel = self.panels.panel(Part::Outline);
+            let panel = self.panels.panel(ui, Part::Outline);
             let shown = panel.show(ui, |ui| outline_ui(ui, edited, &mut lists));
             self.panels.note(Part::Outline, &shown.response);
             listed = shown.inner;
         }
         let mut outcome = Outcome::default();
         if self.panels.inspector {
-            let panel = self.panels.panel(Part::Inspector);
+            let panel = self.panels.panel(ui, Part::Inspector);
             let shown = panel.show(ui, |ui| {
                 let costs = self.live.costs();
                 let saved = self.document.saved_scene();

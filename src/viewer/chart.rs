@@ -294,7 +294,7 @@ impl App {
         if !self.chart.open {
             return None;
         }
-        let panel = self.panels.panel(Part::Chart);
+        let panel = self.panels.panel(ui, Part::Chart);
         let shown = panel.show(ui, |ui| self.chart.ui(ui, edited));
         self.panels.note(Part::Chart, &shown.response);
         let outcome = shown.inner;

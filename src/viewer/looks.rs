@@ -375,7 +375,7 @@ impl App {
             return StripOutcome::default();
         }
         self.strip.take_glimpses(ui, &self.live.glimpses());
-        let panel = self.panels.panel(Part::Looks);
+        let panel = self.panels.panel(ui, Part::Looks);
         let reference = &self.compare.reference;
         panel.show(ui, |ui| self.strip.ui(ui, &scene, reference)).inner
     }

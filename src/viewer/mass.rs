@@ -298,7 +298,7 @@ impl App {
             Selection::Solid(solid) => Some(solid),
             _ => self.picked,
         };
-        let panel = self.panels.panel(Part::Mass);
+        let panel = self.panels.panel(ui, Part::Mass);
         let scene = self.document.scene();
         let shown = panel.show(ui, |ui| self.mass.ui(ui, scene, solid));
         self.panels.note(Part::Mass, &shown.response);

@@ -26,7 +26,8 @@ const PATIENCE: Duration = Duration::from_secs(600);
 /// Measures the window with a scene; `folder` holds its settings and is given up afterwards.
 pub fn measure(name: &str, scene: &Scene, file: &Path, options: Options, folder: &Path) -> Value {
     let (first, edits) = edit_to_picture(scene, options);
-    let turns = turns(file, options, folder);
+    let plain = turns(file, options, (folder, false));
+    let full = turns(file, options, (folder, true));
     json!({
         "scene": name,
         "size": scene.picture.size,
@@ -35,8 +36,10 @@ pub fn measure(name: &str, scene: &Scene, file: &Path, options: Options, folder:
         "first_coarse_ms": first.coarse,
         "first_whole_ms": first.whole,
         "edit_to_picture_ms": edits.json(),
-        "turn_processor_ms": turns.processor.json(),
-        "turn_wall_ms": turns.wall.json(),
+        "turn_processor_ms": plain.processor.json(),
+        "turn_wall_ms": plain.wall.json(),
+        "full_turn_processor_ms": full.processor.json(),
+        "full_turn_wall_ms": full.wall.json(),
     })
 }
 
@@ -46,7 +49,7 @@ pub fn summary(row: &Value) -> String {
     format!(
         "{}: first picture coarse after {:.0} ms, whole after {:.0} ms\n  edit to picture {:.1} ms, \
          p99 {:.1}\n  a turn of the window while tracing: {:.2} ms of processor, p99 {:.2}; wall \
-         {:.2} ms, p99 {:.2}",
+         {:.2} ms, p99 {:.2}\n  with every panel open: {:.2} ms of processor, p99 {:.2}; wall {:.2} ms, p99 {:.2}",
         row["scene"].as_str().unwrap_or("?"),
         number("/first_coarse_ms"),
         number("/first_whole_ms"),
@@ -56,6 +59,10 @@ pub fn summary(row: &Value) -> String {
         number("/turn_processor_ms/p99"),
         number("/turn_wall_ms/median"),
         number("/turn_wall_ms/p99"),
+        number("/full_turn_processor_ms/median"),
+        number("/full_turn_processor_ms/p99"),
+        number("/full_turn_wall_ms/median"),
+        number("/full_turn_wall_ms/p99"),
     )
 }
 
@@ -119,8 +126,9 @@ struct Turns {
     wall: Spread,
 }
 
-/// Turns of the window's loop, tessellation included, from its start to the end of its first trace.
-fn turns(file: &Path, options: Options, folder: &Path) -> Turns {
+/// Turns of the window's loop, tessellation included, from its start to the end of its first trace;
+/// `full` with every panel open.
+fn turns(file: &Path, options: Options, (folder, full): (&Path, bool)) -> Turns {
     let ctx = Context::default();
     let setup = Setup {
         options,
@@ -129,6 +137,9 @@ fn turns(file: &Path, options: Options, folder: &Path) -> Turns {
         scene: Some(file.to_owned()),
     };
     let mut app = App::new(&ctx, setup);
+    if full {
+        app.open_all_panels();
+    }
     let (mut processor, mut wall) = (Vec::new(), Vec::new());
     let start = Instant::now();
     for turn in 0.. {

@@ -258,19 +258,16 @@ fn items(ui: &mut Ui, lines: &[Line], state: &MenuState<'_>, chosen: &mut Option
 
 fn view_menu(ui: &mut Ui, state: &MenuState<'_>, chosen: &mut Option<Command>) {
     items(ui, &VIEW, state, chosen);
-    ui.menu_button("Colours", |ui| {
-        let all = [Theme::System, Theme::Light, Theme::Dark].map(Command::Colours);
-        items(ui, &all.map(Line::Switch), state, chosen);
-    })
-    .response
-    .on_hover_text("Light or dark");
-    ui.menu_button("Size of text", |ui| {
-        let all: [Line; TEXT_SIZES.len()] =
+    ui.menu_button("Colours and size", |ui| {
+        let colours = [Theme::System, Theme::Light, Theme::Dark].map(Command::Colours);
+        items(ui, &colours.map(Line::Switch), state, chosen);
+        ui.separator();
+        let sizes: [Line; TEXT_SIZES.len()] =
             std::array::from_fn(|index| Line::Switch(Command::TextSize(index)));
-        items(ui, &all, state, chosen);
+        items(ui, &sizes, state, chosen);
     })
     .response
-    .on_hover_text("Of text and controls");
+    .on_hover_text("Light or dark; the size of text and controls");
 }
 
 pub(super) fn item(ui: &mut Ui, command: Command, chosen: &mut Option<Command>) {

@@ -1,9 +1,12 @@
 //! The panels around the picture: where each lies, how large it is, and whether it shows.
 
-use eframe::egui::{Context, Panel, Response};
+use eframe::egui::{Context, Panel, Response, Ui};
 
 use super::app::App;
 use crate::document::arrangement::{Arrangement, Part};
+
+/// Share of the height that is left which a panel below the picture may take.
+const MOST: f32 = 0.6;
 
 /// What is remembered of the panels while the window is open.
 pub(super) struct Panels {
@@ -34,8 +37,9 @@ impl Panels {
         }
     }
 
-    /// A panel in its place.
-    pub(super) fn panel(&self, part: Part) -> Panel {
+    /// A panel in its place in `ui`. One below the picture takes no more than [`MOST`] of the height
+    /// that is left, so that the picture does not vanish.
+    pub(super) fn panel(&self, ui: &Ui, part: Part) -> Panel {
         let (name, first, least) = match part {
             Part::Outline => ("outline", 180.0, 120.0),
             Part::Inspector => ("inspector", 440.0, 380.0),
@@ -56,7 +60,14 @@ impl Panels {
             return panel.resizable(false);
         }
         let size = self.given.size(part).map_or(first, |points| points as f32);
-        panel.resizable(true).default_size(size).min_size(least)
+        let panel = panel.resizable(true).default_size(size);
+        match part {
+            Part::Outline | Part::Inspector => panel.min_size(least),
+            _ => {
+                let most = (ui.available_height() * MOST).max(least);
+                panel.size_range(least..=most)
+            }
+        }
     }
 
     /// Looks at a panel that was shown: a size that changed under a pressed pointer was dragged.
@@ -99,6 +110,11 @@ impl App {
         let round = self.panels.round + 1;
         self.panels = Panels { round, ..Panels::new(&Arrangement::default()) };
         Part::ALL.into_iter().for_each(|part| *self.open_flag(part) = part.shows_at_first());
+    }
+
+    /// Opens every panel there is.
+    pub(super) fn open_all_panels(&mut self) {
+        Part::ALL.into_iter().for_each(|part| *self.open_flag(part) = true);
     }
 
     /// Writes the layout to the settings when it is another one, not while it is being dragged.

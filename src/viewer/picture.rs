@@ -70,8 +70,11 @@ impl Layer {
         let side = ui.input(|i| i.max_texture_side).min(TEXTURE_SIDE);
         for (i, &rect) in pieces(frame.size, side).iter().enumerate() {
             let image = image(frame, rect);
-            match self.pieces.get_mut(i).map(|piece| &mut piece.texture) {
-                Some(Texture::Copied(handle)) => handle.set(image, sharp),
+            match self.pieces.get_mut(i) {
+                Some(Piece { texture: Texture::Copied(handle), rect: place }) => {
+                    handle.set(image, sharp);
+                    *place = bounds(rect);
+                }
                 _ => {
                     let texture = ui.ctx().load_texture(format!("{name} {i}"), image, sharp);
                     let texture = Texture::Copied(texture);

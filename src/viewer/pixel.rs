@@ -288,7 +288,7 @@ impl App {
         if !self.pixel.open {
             return;
         }
-        let panel = self.panels.panel(Part::Pixel);
+        let panel = self.panels.panel(ui, Part::Pixel);
         let known = self.live.inspected();
         let today = (self.document.scene(), self.selection);
         let shown = panel.show(ui, |ui| self.pixel.ui(ui, &known, today));

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::Shader;
+use super::{Preview, Shader};
 use crate::film::clipping::mark;
 use crate::film::develop::Development;
 use crate::session::live::Marked;
@@ -22,9 +22,11 @@ impl Shader {
         let shown = self.preview.as_ref().map(|p| &p.session).or(self.whole.as_ref());
         let session = shown.filter(|_| self.marks)?;
         session.develop_film(&mut self.film);
-        let mut frame = Arc::new(session.frame().clone());
+        let plain = session.shared_frame();
+        let frame = self.preview.as_ref().map_or(plain, Preview::frame);
+        let mut frame = Arc::unwrap_or_clone(frame);
         let development = Development::of(&session.scene().picture);
-        let clipped = mark(&self.film, development, Arc::make_mut(&mut frame));
-        Some(Marked { frame, clipped })
+        let clipped = mark(&self.film, development, &mut frame);
+        Some(Marked { frame: Arc::new(frame), clipped })
     }
 }

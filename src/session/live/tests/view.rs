@@ -63,6 +63,7 @@ fn a_region_is_whole_before_the_rest_and_follows_edits() {
     // Shininess is another highlight, colour another term.
     let edited =
         with(&with(&scene, "lights.key.color", "[0.9, 0.5, 0.4]"), "picture.exposure", "1");
+    let edited = with(&edited, "materials.ruby.shininess", "7");
     window.want(&edited);
     window.wait("the edit", |w| *w.shown().scene == edited);
     let second = window.shown().clone();
