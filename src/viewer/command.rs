@@ -371,7 +371,7 @@ impl Command {
     }
 
     /// Every command, in the order of the menus.
-    pub(super) const ALL: [Command; 82] = [
+    pub(super) const ALL: [Command; 84] = [
         Command::New(0),
         Command::New(1),
         Command::New(2),
@@ -414,6 +414,8 @@ impl Command {
         Command::Rename,
         Command::Delete,
         Command::Assign,
+        Command::CopyMaterial,
+        Command::PasteMaterial,
         Command::Fit,
         Command::ActualSize,
         Command::ZoomIn,
