@@ -1,8 +1,10 @@
 //! Materials to begin with: metals, glasses, paints and stones, each with a picture of a ball made of it.
 
+use std::io::Cursor;
 use std::path::Path;
 
 use super::things::free_material_name;
+use crate::film::Frame;
 use crate::scene::read::{self, Known};
 use crate::scene::{Material, Scene, write};
 
@@ -22,10 +24,24 @@ pub fn all() -> Vec<Material> {
     read::text(TEXT, Path::new("materials.toml")).expect("the presets have no mistakes").materials
 }
 
+/// The pictures of all presets, as they stand in [`SHEET`].
+pub fn pictures() -> Frame {
+    let mut reader = png::Decoder::new(Cursor::new(SHEET)).read_info().expect("the sheet is a PNG");
+    let size = [reader.info().width, reader.info().height];
+    let mut frame = Frame::new(size);
+    let mut bytes = vec![0; frame.bytes.len() / 4 * 3];
+    reader.next_frame(&mut bytes).expect("the sheet is a whole PNG of RGB bytes");
+    let (pixels, _) = bytes.as_chunks::<3>();
+    let (places, _) = frame.bytes.as_chunks_mut::<4>();
+    for (place, [r, g, b]) in places.iter_mut().zip(pixels) {
+        *place = [*r, *g, *b, 255];
+    }
+    frame
+}
+
 /// The scene of a material's picture: a ball made of it on a chequered ground.
 pub fn stage(material: &Material) -> Scene {
-    let mut scene =
-        read::text(STAGE, Path::new("swatch.toml")).expect("the stage has no mistakes");
+    let mut scene = read::text(STAGE, Path::new("swatch.toml")).expect("the stage has no mistakes");
     let ball = scene.solids.last().map_or(0, |ball| ball.material);
     give(&mut scene.materials[ball], material);
     scene
@@ -42,7 +58,8 @@ pub fn give(material: &mut Material, what: &Material) {
 pub fn provide(scene: &mut Scene, what: &Material) -> usize {
     let is_same = |material: &Material| {
         let rest = material.name.strip_prefix(&what.name);
-        let numbered = rest.is_some_and(|rest| rest.trim_start().chars().all(|c| c.is_ascii_digit()));
+        let numbered =
+            rest.is_some_and(|rest| rest.trim_start().chars().all(|c| c.is_ascii_digit()));
         let mut other = material.clone();
         give(&mut other, what);
         numbered && other == *material
@@ -65,7 +82,8 @@ pub fn text(material: &Material) -> String {
 /// The first material of a text such as [`text`] gives, or of a whole scene; what is wrong with it,
 /// if it holds none. Files that it names are sought beside `scene_file`.
 pub fn parse(text: &str, scene_file: &Path) -> Result<Material, String> {
-    let text = match text.contains("version") {
+    let has_version = text.lines().any(|line| line.trim_start().starts_with("version"));
+    let text = match has_version {
         true => text.to_owned(),
         false => format!("version = 1\n{text}"),
     };

@@ -45,9 +45,14 @@ pub fn add_light(scene: &mut Scene, place: LightPlace) -> Thing {
 
 /// A new matt white material, behind all others, so that no index shifts.
 pub fn add_material(scene: &mut Scene) -> Thing {
-    let name = first_free("material", 1, material_names(scene));
+    let name = free_material_name(scene, "material");
     scene.materials.push(Material::new(name));
     Thing::Material(scene.materials.len() - 1)
+}
+
+/// The first of `stem`, `stem 2`, `stem 3` … that no material has.
+pub(super) fn free_material_name(scene: &Scene, stem: &str) -> String {
+    first_free(stem, 1, material_names(scene))
 }
 
 /// A copy, behind all others, named `NAME 2` or the next number that is free.

@@ -6,6 +6,7 @@ use std::time::Instant;
 use eframe::egui::{CentralPanel, Context, Frame, Margin, Panel, Ui, Vec2, ViewportCommand};
 
 use super::Setup;
+use super::carried::Outlined;
 use super::chart::ChartPanel;
 use super::command::Command;
 use super::commands::Run;
@@ -26,6 +27,7 @@ use super::palette::Palette;
 use super::panels::Panels;
 use super::picture::PictureView;
 use super::pixel::PixelPanel;
+use super::presets::Presets;
 use super::rename::Renaming;
 use super::screen::{Screen, wake};
 use super::status::status_ui;
@@ -63,6 +65,12 @@ pub struct App {
     pub(super) picked: Option<usize>,
     /// The name that is being changed, if one is.
     pub(super) renaming: Option<Renaming>,
+    /// Materials to choose from.
+    pub(super) presets: Presets,
+    /// The solid that a preset is carried over.
+    pub(super) outlined: Outlined,
+    /// What the step is called that this turn makes, if it is more than it seems.
+    pub(super) step_name: Option<String>,
     pub(super) handles: Handles,
     pub(super) mixer: Mixer,
     pub(super) strip: Strip,
@@ -141,6 +149,9 @@ impl App {
             recovery,
             picked: None,
             renaming: None,
+            presets: Presets::default(),
+            outlined: Outlined::default(),
+            step_name: None,
             handles: Handles::default(),
             mixer: Mixer::default(),
             strip: Strip::default(),
@@ -176,6 +187,7 @@ impl App {
         let ctx = ui.ctx().clone();
         self.receive(ui);
         self.receive_files(&ctx);
+        self.receive_material(&ctx);
         let mut commands = self.shortcuts(&ctx);
         let mut edited = self.document.scene().clone();
         let mut changed = false;
@@ -198,7 +210,7 @@ impl App {
             }
             self.commit(edited);
         }
-        if let Some(step) = step {
+        if let Some(step) = step.or(self.step_name.take()).filter(|_| changed) {
             self.document.name_step(step);
         }
         self.apply_strip(strip);
@@ -357,7 +369,8 @@ impl App {
             let shown = panel.show(ui, |ui| {
                 let costs = self.live.costs();
                 let saved = self.document.saved_scene();
-                let known = Known { saved, costs: &costs, picked: self.picked };
+                let presets = &self.presets;
+                let known = Known { saved, costs: &costs, picked: self.picked, presets };
                 inspector_ui(ui, edited, self.selection, &known)
             });
             self.panels.note(Part::Inspector, &shown.response);
@@ -365,6 +378,7 @@ impl App {
         }
         outcome.select = outcome.select.or(listed.select);
         commands.extend(listed.command.or(outcome.command));
+        self.step_name = outcome.step.take();
         if let Some(left) = listed.renamed {
             outcome.changed |= self.renamed(left, edited);
         }
@@ -387,7 +401,7 @@ impl App {
     /// The picture and the handles in it; whether the camera or a light was moved.
     fn picture_ui(&mut self, ui: &mut Ui, edited: &mut Scene) -> bool {
         self.prepare_comparison(ui);
-        let (outcome, handled) = CentralPanel::no_frame()
+        let (outcome, handled, dropped) = CentralPanel::no_frame()
             .show(ui, |ui| {
                 self.view = ui.available_size();
                 let view = ui.available_rect_before_wrap();
@@ -398,8 +412,9 @@ impl App {
                 let stage = Stage::new(edited, [place, view], self.selection, &costs);
                 let handled = self.handles.ui(ui, &stage, &mut edited.lights);
                 self.pixel.mark_ui(ui, [place, view], edited.picture.size);
+                let dropped = self.carried_ui(ui, [place, view], edited);
                 self.notices.ui(ui);
-                (outcome, handled)
+                (outcome, handled, dropped)
             })
             .inner;
         self.select(handled.select);
@@ -421,7 +436,7 @@ impl App {
         if outcome.camera_moved && !ui.input(|i| i.pointer.any_down()) {
             self.go_on_with(ui.ctx(), Run::Wheel);
         }
-        outcome.camera_moved || handled.changed || focused
+        outcome.camera_moved || handled.changed || focused || dropped
     }
 
     /// Focuses on what is seen at a point of the picture, once; whether the camera was changed.

@@ -44,6 +44,10 @@ pub(super) enum Command {
     Delete,
     /// Gives the selected material to the solid clicked last.
     Assign,
+    /// Puts the selected material on the clipboard.
+    CopyMaterial,
+    /// Gives the selected material the values of the one on the clipboard.
+    PasteMaterial,
     /// The whole picture in the window.
     Fit,
     /// One pixel of the picture on one pixel of the screen.
@@ -147,6 +151,8 @@ impl Command {
             Command::Rename => "Rename",
             Command::Delete => "Delete",
             Command::Assign => "Assign to picked solid",
+            Command::CopyMaterial => "Copy material",
+            Command::PasteMaterial => "Paste material",
             Command::Fit => "Fit",
             Command::ActualSize => "1:1",
             Command::ZoomIn => "Zoom in",
@@ -211,6 +217,10 @@ impl Command {
             Command::Rename => "Changes the name here and wherever the scene file uses it",
             Command::Delete => "Takes it out of the scene; a material must not be in use",
             Command::Assign => "Gives this material to the solid that was clicked last",
+            Command::CopyMaterial => "Copies its values, as a scene file writes them",
+            Command::PasteMaterial => {
+                "Gives it the values of the material that was copied; it keeps its name"
+            }
             Command::Fit => "Shows the whole picture",
             Command::ActualSize => "Shows one picture pixel on one pixel of the screen",
             Command::ZoomIn => "Enlarges the picture; or turn the wheel over it",
@@ -318,6 +328,8 @@ impl Command {
             | Command::AddLight
             | Command::AddMaterial
             | Command::Assign
+            | Command::CopyMaterial
+            | Command::PasteMaterial
             | Command::Chart
             | Command::Mass
             | Command::SampleMap
@@ -359,7 +371,7 @@ impl Command {
     }
 
     /// Every command, in the order of the menus.
-    pub(super) const ALL: [Command; 82] = [
+    pub(super) const ALL: [Command; 84] = [
         Command::New(0),
         Command::New(1),
         Command::New(2),
@@ -402,6 +414,8 @@ impl Command {
         Command::Rename,
         Command::Delete,
         Command::Assign,
+        Command::CopyMaterial,
+        Command::PasteMaterial,
         Command::Fit,
         Command::ActualSize,
         Command::ZoomIn,
@@ -445,8 +459,19 @@ impl Command {
     ];
 
     /// The commands about the selected light or material.
-    pub(super) const ON_THINGS: [Command; 4] =
-        [Command::Duplicate, Command::Rename, Command::Delete, Command::Assign];
+    pub(super) const ON_THINGS: [Command; 6] = [
+        Command::Duplicate,
+        Command::Rename,
+        Command::Delete,
+        Command::Assign,
+        Command::CopyMaterial,
+        Command::PasteMaterial,
+    ];
+
+    /// Whether it is about materials alone.
+    pub(super) fn needs_material(self) -> bool {
+        matches!(self, Command::Assign | Command::CopyMaterial | Command::PasteMaterial)
+    }
 }
 
 #[cfg(test)]

@@ -134,6 +134,7 @@ impl App {
                 self.panels.outline |= command == Command::Rename;
                 self.run_on_things(command);
             }
+            Command::CopyMaterial | Command::PasteMaterial => self.run_on_clipboard(ctx, command),
             _ => self.run_file_command(ctx, command),
         }
     }
@@ -168,7 +169,12 @@ impl App {
                 let offer = self.keep_offer();
                 return (!offer.possible).then_some(offer.about);
             }
-            Command::Duplicate | Command::Rename | Command::Delete | Command::Assign => {
+            Command::Duplicate
+            | Command::Rename
+            | Command::Delete
+            | Command::Assign
+            | Command::CopyMaterial
+            | Command::PasteMaterial => {
                 self.subject().offer(command, self.document.scene()).refusal?
             }
             Command::Stop if self.live.status().job.is_none() => "Nothing runs",

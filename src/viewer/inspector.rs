@@ -12,7 +12,9 @@ use super::lists::{Subject, offer_ui};
 use super::number::Edit;
 use super::operands::operands_ui;
 use super::paints::{ImageFor, kinds_ui};
+use super::presets::Presets;
 use super::values::{Defaults, same_name, texts, visit};
+use crate::document::presets::give;
 use crate::document::things::{Thing, users};
 use crate::scene::Scene;
 use crate::scene::fields::{self, Need, Visit};
@@ -83,6 +85,8 @@ pub(super) struct Known<'a> {
     pub(super) costs: &'a BTreeMap<String, Cost>,
     /// Index of the solid that was clicked or selected last.
     pub(super) picked: Option<usize>,
+    /// Materials to choose from.
+    pub(super) presets: &'a Presets,
 }
 
 /// What the person did in the inspector.
@@ -100,6 +104,8 @@ pub(super) struct Outcome {
     pub(super) pick: Option<ImageFor>,
     /// What else was done with controls.
     pub(super) edit: Edit,
+    /// What the step is called, if it is more than it seems.
+    pub(super) step: Option<String>,
 }
 
 /// Shows the controls of a selection, which write into `scene`.
@@ -120,6 +126,13 @@ pub(super) fn inspector_ui(
     }
     let saved = texts(known.saved, same_name(scene, known.saved, selection));
     ScrollArea::vertical().auto_shrink(false).id_salt(selection).show(ui, |ui| {
+        if let Selection::Material(i) = selection
+            && let Some(preset) = known.presets.ui(ui)
+        {
+            give(&mut scene.materials[i], preset);
+            outcome.changed = true;
+            outcome.step = Some(format!("{} for {}", preset.name, scene.materials[i].name));
+        }
         kinds_ui(ui, scene, selection, &mut outcome);
         if let Selection::Solid(i) = selection {
             operands_ui(ui, scene, i, &mut outcome);

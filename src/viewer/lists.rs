@@ -38,6 +38,15 @@ impl Subject {
             return self.assignment(scene);
         }
         let selection = self.selection.within(scene);
+        if command.needs_material() {
+            return match selection {
+                Selection::Material(i) => {
+                    let name = format!("{verb} {}", scene.materials[i].name);
+                    Offer { name, refusal: None }
+                }
+                _ => Offer { name: verb.into(), refusal: Some("Select a material first") },
+            };
+        }
         match selection.thing() {
             Some(thing) => {
                 let name = format!("{verb} {} {}", thing.kind(), thing.name(scene));

@@ -162,7 +162,7 @@ pub(super) fn things_ui(
 ) {
     let is_light = matches!(subject.selection, Selection::Light(_));
     for command in Command::ON_THINGS {
-        if is_light && command == Command::Assign {
+        if is_light && command.needs_material() {
             continue;
         }
         let offer = subject.offer(command, scene);

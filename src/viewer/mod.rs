@@ -2,6 +2,7 @@
 
 mod app;
 mod badge;
+mod carried;
 mod carry;
 mod chart;
 mod chart_plot;
@@ -54,6 +55,7 @@ mod pixel_bars;
 mod pixel_lines;
 mod pixel_marks;
 mod pixel_rows;
+mod presets;
 mod rename;
 mod screen;
 mod slider;

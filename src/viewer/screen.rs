@@ -141,6 +141,7 @@ impl App {
     /// Lets go of all pictures on the card.
     fn forget_textures(&mut self) {
         self.picture.forget_textures();
+        self.presets.forget_textures();
         self.compare.painted = None;
         self.is_frame_stale = true;
     }

@@ -44,10 +44,12 @@ pub(super) struct Slid {
 }
 
 /// How the pointer holds the handle: both along the rail, in points.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Grip {
     handle: f32,
     pointer: f32,
+    /// What the rail covers as long as it is held: a span that follows the value would run from it.
+    scale: Scale,
 }
 
 impl Slider<'_> {
@@ -55,7 +57,9 @@ impl Slider<'_> {
     pub(super) fn ui(&self, ui: &mut Ui, value: &mut f64) -> (Response, Slid) {
         let size = vec2(ui.spacing().slider_width, ui.spacing().interact_size.y);
         let (rect, mut response) = ui.allocate_exact_size(size, Sense::click_and_drag());
-        let rail = Rail { rect, scale: &self.scale };
+        let held = grip_of(ui, &response).map(|grip| grip.scale);
+        let scale = held.as_ref().unwrap_or(&self.scale);
+        let rail = Rail { rect, scale };
         let before = *value;
         let mut slid = Slid::default();
         if response.double_clicked() {
@@ -98,7 +102,8 @@ impl Slider<'_> {
             response.request_focus();
             note_focus(ui, response.id);
             let is_on_handle = (pointer - handle).abs() <= rail.radius() + 1.0;
-            Grip { handle: if is_on_handle { handle } else { pointer }, pointer }
+            let handle = if is_on_handle { handle } else { pointer };
+            Grip { handle, pointer, scale: rail.scale.clone() }
         });
         let factor = if fine { FINE } else { 1.0 };
         now.handle += (pointer - now.pointer) * factor;
@@ -205,7 +210,7 @@ impl Slider<'_> {
         let handle = rail.position(value);
         painter.rect_filled(bar(left, right), round, visuals.widgets.inactive.bg_fill);
         painter.rect_filled(bar(left, handle), round, visuals.selection.bg_fill);
-        for x in self.limits.iter().filter(|x| self.scale.span.contains(x)) {
+        for x in self.limits.iter().filter(|x| rail.scale.span.contains(x)) {
             // Below the rail, so that the handle does not hide it.
             let at = rail.position(*x);
             let line = [pos2(at, middle + 4.0), pos2(at, rail.rect.bottom())];

@@ -56,14 +56,24 @@ pub(super) enum Target {
 
 /// The scene shown, ready for single rays.
 #[derive(Clone)]
-pub(super) struct Eye {
+pub struct Eye {
     pub(super) scene: Arc<Scene>,
     pub(super) geometry: Arc<Geometry>,
 }
 
 impl Eye {
+    /// `picture.size` of the scene.
+    pub fn size(&self) -> [u32; 2] {
+        self.scene.picture.size
+    }
+
+    /// The name of the solid with this index.
+    pub fn solid_name(&self, index: usize) -> Option<&str> {
+        Some(&self.scene.solids.get(index)?.name)
+    }
+
     /// What the ray through a point of the picture meets first.
-    pub(super) fn pick(&self, [x, y]: [f64; 2]) -> Option<Picked> {
+    pub fn pick(&self, [x, y]: [f64; 2]) -> Option<Picked> {
         let size = self.scene.picture.size;
         let [width, height] = size.map(f64::from);
         if !((0.0..width).contains(&x) && (0.0..height).contains(&y)) {

@@ -29,6 +29,7 @@ use crate::forest::counts::SampleMap;
 use crate::scene::Scene;
 use crate::shade::gpu::{Gpu, Picture};
 use board::Board;
+pub use board::Eye;
 use shader::{Message, Shader};
 
 /// How fine a picture is.
@@ -332,6 +333,11 @@ impl Live {
     /// pauses while the scene is traced or edited.
     pub fn export(&self, export: Export) {
         self.order(Message::Export(export));
+    }
+
+    /// The scene shown, for single rays of whoever asks.
+    pub fn eye(&self) -> Option<Eye> {
+        self.board.eye()
     }
 
     /// What lies under a point of the picture shown, in pixels of `picture.size`.

@@ -22,7 +22,7 @@ fn assets() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("assets")
 }
 
-fn is_update() -> bool {
+pub(super) fn is_update() -> bool {
     std::env::var_os("RAYFOREST_UPDATE_GOLDENS").is_some()
 }
 
@@ -35,7 +35,7 @@ fn example(key: &str) -> Scene {
 }
 
 /// What a scene shows, as a file, decoded again.
-fn render(scene: Scene, to: &Path) -> Vec<u8> {
+pub(super) fn render(scene: Scene, to: &Path) -> Vec<u8> {
     let options = Options { threads: 2, memory: 1 << 30 };
     let session = Session::open(scene, options, &Progress::default());
     let film = session.unwrap_or_else(|e| panic!("{e}")).film();

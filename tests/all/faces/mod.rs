@@ -16,6 +16,7 @@ mod layers;
 mod looks;
 mod mass;
 mod parts;
+mod presets;
 mod window;
 
 use std::path::Path;

@@ -159,6 +159,9 @@ fn a_value_is_copied_as_the_file_writes_it_and_pasted_elsewhere() {
     assert_eq!(window.diffuse(), 0.0, "the nearest that the range allows");
     window.paste(Role::Slider, "diffuse", "Paste value", "42");
     assert_eq!(window.diffuse(), 42.0, "the slider widens");
+    window.drag_slider("diffuse", 0.5);
+    assert!((15.0..27.0).contains(&window.diffuse()), "in its own span: {}", window.diffuse());
+    window.click("Undo");
     window.harness.event(Event::Paste("1".into()));
     window.harness.run_steps(2);
     assert_eq!(window.diffuse(), 42.0, "nobody asked");

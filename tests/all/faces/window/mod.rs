@@ -27,6 +27,7 @@ mod palette;
 mod paths;
 mod picture;
 mod pixel;
+mod presets;
 mod questions;
 mod recovery;
 mod welcome;

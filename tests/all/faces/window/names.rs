@@ -268,6 +268,18 @@ fn every_control_of_the_colour_picker_has_a_name_and_a_tooltip() {
 }
 
 #[test]
+fn every_preset_has_a_name_and_a_tooltip() {
+    let mut window = tall();
+    window.click("mirror");
+    let before = window.controls();
+    window.click("Presets");
+    // What moved to make room is not new.
+    let mut others = window.controls();
+    others.retain(|control| before.iter().any(|old| old.name == control.name));
+    window.walk(&others, 20);
+}
+
+#[test]
 fn every_item_of_the_menu_of_a_value_has_a_name_and_a_tooltip() {
     let mut window = tall();
     window.click("mirror");
