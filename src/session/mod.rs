@@ -5,6 +5,7 @@ mod canvas;
 mod class;
 mod contrast;
 pub mod cost;
+mod draw;
 pub mod inspect;
 mod knob;
 pub mod layers;
@@ -23,10 +24,9 @@ use std::time::Instant;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use crate::film::develop::Development;
+use crate::film::Frame;
 use crate::film::layout::TILE_BLOCKS;
 use crate::film::plates::Region;
-use crate::film::{Film, Frame};
 use crate::fold::Names;
 use crate::fold::highlight::HighlightPower;
 use crate::fold::transport::Transport;
@@ -40,7 +40,7 @@ use crate::scene::change::Change;
 use crate::scene::factor::FactorValues;
 use crate::scene::model::{Lobes, Peak};
 use crate::scene::{Material, Scene};
-use crate::shade::cpu::{self, Tiles};
+use crate::shade::cpu::Tiles;
 use crate::shade::terms::{TermProgram, TermValues};
 use canvas::Canvas;
 pub use class::{Class, EditReport, Work};
@@ -409,45 +409,6 @@ impl Session {
         self.pool = pool.clone();
     }
 
-    /// Draws some tiles, at once or when [`Session::catch_up`] is called.
-    fn draw(&mut self, tiles: Tiles) {
-        self.canvas.owe(tiles);
-        if !self.canvas.waits {
-            self.catch_up();
-        }
-    }
-
-    /// Lets drawing wait from now on, or no longer: somebody else shows the picture.
-    pub(super) fn defer(&mut self, waits: bool) {
-        self.canvas.waits = waits;
-    }
-
-    /// Whether the frame waits to be drawn.
-    pub(super) fn owes_frame(&self) -> bool {
-        self.canvas.owes()
-    }
-
-    /// Draws what waits.
-    pub(super) fn catch_up(&mut self) {
-        if !self.canvas.owes() {
-            return;
-        }
-        let owed = self.canvas.take_owed();
-        let development = Development::of(&self.scene.picture);
-        let values = &self.terms.values;
-        let frame = self.canvas.edit();
-        cpu::frame(&self.pool, &self.transport, values, development, Tiles::Marked(&owed), frame);
-    }
-
-    /// Draws the present trees as `scene` shows them, as far as they reach: pixels that a plan for it
-    /// does not name, and that have no highlight of another exponent, are final.
-    pub(super) fn draw_ahead(&self, scene: &Scene, change: &Change, frame: &mut Frame) {
-        let mut terms = TermValues::default();
-        terms.evaluate(&self.program, &self.factors_ahead(scene, change));
-        let development = Development::of(&scene.picture);
-        cpu::frame(&self.pool, &self.transport, &terms.values, development, Tiles::All, frame);
-    }
-
     /// Traces the same scene again, into the memory of the present trees.
     pub fn trace_again(&mut self, progress: &Progress) -> Result<(), TraceError> {
         self.retrace(self.scene.clone(), false, progress)
@@ -468,27 +429,6 @@ impl Session {
     pub fn evaluate_terms(&mut self) {
         let factors = FactorValues::new(&self.scene).with_lights_at(&self.names.lights);
         self.terms.evaluate(&self.program, &factors);
-    }
-
-    /// Shades every pixel anew, as after an edit that touches everything.
-    pub fn redraw(&mut self) {
-        self.evaluate_terms();
-        self.draw(Tiles::All);
-    }
-
-    /// The picture in linear floats, into `film`, whose memory is kept if its size fits.
-    pub fn develop_film(&self, film: &mut Film) {
-        if film.layout != self.transport.layout {
-            *film = Film::new(self.transport.layout);
-        }
-        cpu::film(&self.pool, &self.transport, &self.terms.values, film);
-    }
-
-    /// The picture in linear floats.
-    pub fn film(&self) -> Film {
-        let mut film = Film::default();
-        self.develop_film(&mut film);
-        film
     }
 
     /// What grows the trees of the present scene, with what is kept of them.
