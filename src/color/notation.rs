@@ -51,7 +51,9 @@ pub struct Hsv {
 impl Hsv {
     /// Of a linear colour whose channels are at most 1; those above count as 1.
     pub fn of(color: Rgb) -> Hsv {
-        let [r, g, b] = color.0.map(|c| srgb_of_linear(f64::from(c)));
+        // The curve's own 1 is one ulp below.
+        let srgb = |c: f32| if c >= 1.0 { 1.0 } else { srgb_of_linear(f64::from(c)) };
+        let [r, g, b] = color.0.map(srgb);
         let (most, least) = (r.max(g).max(b), r.min(g).min(b));
         let spread = most - least;
         if spread <= 0.0 {
