@@ -260,8 +260,7 @@ impl Session {
         patches.iter().for_each(|patch| rays += patch.rays);
         rays += regrow.rays_to_decide();
         let (pixels, reason) = (regrow.plan.pixels(), Some(regrow.plan.reason.clone()));
-        // What a plan prepares for may not happen: a lobe that differs below the cut-off casts nothing.
-        let class = match rays.total() > 0 {
+        let class = match regrow.plan.casts || rays.total() > 0 {
             true => Class::Regrow,
             false => Class::Refold,
         };

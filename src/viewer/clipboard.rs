@@ -57,7 +57,7 @@ pub(super) fn is_copied(ctx: &Context) -> bool {
 /// A text as a message quotes it: its first line, cut short.
 pub(super) fn quoted(text: &str) -> String {
     const MOST: usize = 24;
-    let line = text.trim().lines().next().unwrap_or_default();
+    let line = text.trim().lines().next().unwrap_or_default().trim_end();
     match line.char_indices().nth(MOST) {
         Some((end, _)) => format!("`{}…`", &line[..end]),
         None => format!("`{line}`"),

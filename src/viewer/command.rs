@@ -237,8 +237,8 @@ impl Command {
             Command::Darker => "Lowers the exposure to the next third of a stop",
             Command::NoExposure => "Shows the light as it is",
             Command::Clipping => {
-                "Red: a channel is brighter than the screen can show; blue: darker than black. On the \
-                 screen only; the status line says how many"
+                "Marks pixels that the screen cannot show: red where a channel is too bright, blue where it \
+                 is darker than black. On the screen only; the status line says how many"
             }
             Command::CropTool => {
                 "Drag a rectangle in the picture: what lies in it is traced first and to its end"
