@@ -47,7 +47,7 @@ impl Presets {
     /// Shows the presets below a line that opens them; the one that was clicked.
     pub(super) fn ui(&self, ui: &mut Ui) -> Option<&Material> {
         let mut chosen = None;
-        let header = CollapsingHeader::new("Presets").show(ui, |ui| {
+        let header = CollapsingHeader::new("Presets").show_unindented(ui, |ui| {
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
                 for (i, preset) in self.list().iter().enumerate() {

@@ -12,6 +12,7 @@ mod inspected;
 mod lamps;
 mod memory;
 mod parts;
+mod presets;
 pub(crate) mod random;
 mod regrows;
 mod stopped;

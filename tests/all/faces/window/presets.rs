@@ -66,7 +66,6 @@ fn a_preset_is_dropped_on_a_solid() {
 
     // The same once more: the material is there already.
     let saved = window.scene().clone();
-    window.click("Presets");
     let from = window.rect(Role::Button, "preset copper").center();
     window.drag(from, ball);
     assert!(*window.scene() == saved);
