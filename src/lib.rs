@@ -74,6 +74,9 @@
 //! * **Two products.** The processor's is the picture: it is exported, compared and kept. A graphics card
 //!   draws whole pictures besides, for the screen alone: its light may differ in the last bits, so that
 //!   some pixels differ by a code value. Nothing waits for it, and a card that is lost takes nothing along.
+//! * **Developing comes last.** Exposure, tone curve and sRGB are functions of a pixel's light alone; marks
+//!   on what a screen cannot show are of the view, never of a file, and so is the region of the picture
+//!   that is traced before the rest: it changes what is seen first, not what is seen in the end.
 //! * **What is kept on disk** is a session's parts and the scene that they were made from; opening it is
 //!   one edit, from that scene to the opened one. Nothing in the file is trusted: lengths, checksums
 //!   and every index are checked first. The thread that shades writes it, in turns; the one that

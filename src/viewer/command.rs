@@ -1,6 +1,6 @@
 //! Everything the window can be told to do, listed once: menus, shortcuts, palette and tooltips read this list.
 
-use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use crate::document::arrangement::Part;
 use crate::document::settings::Theme;
@@ -116,6 +116,19 @@ pub(super) enum Command {
     Stop,
     /// Traces what a stop left out.
     Resume,
+}
+
+/// Keys as they are printed on a keyboard: egui spells some of them.
+pub(super) fn keys_text(ctx: &Context, keys: &KeyboardShortcut) -> String {
+    let sign = match keys.logical_key {
+        Key::OpenBracket => "[",
+        Key::CloseBracket => "]",
+        Key::Plus => "+",
+        Key::Minus => "-",
+        Key::Questionmark => "?",
+        _ => return ctx.format_shortcut(keys),
+    };
+    sign.to_owned()
 }
 
 /// Sizes of text and controls to choose from: per cent, and what they are called.

@@ -3,7 +3,7 @@
 use eframe::egui::{Context, Grid, Id, Modal, RichText, ScrollArea, Ui};
 
 use super::app::App;
-use super::command::Command;
+use super::command::{Command, keys_text};
 
 /// What the pointer does, and keys that are no commands.
 const GESTURES: [(&str, &str); 13] = [
@@ -41,7 +41,7 @@ fn list_ui(ui: &mut Ui) -> bool {
     list.show(ui, |ui| {
         Grid::new("keys").num_columns(3).spacing([18.0, 4.0]).show(ui, |ui| {
             for (command, keys) in keyed() {
-                ui.monospace(ui.ctx().format_shortcut(&keys));
+                ui.monospace(keys_text(ui.ctx(), &keys));
                 ui.label(command.name());
                 ui.weak(first_clause(command.about()));
                 ui.end_row();

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use eframe::egui::{Align, Button, Label, Layout, MenuBar, Ui};
 
-use super::command::{Command, TEXT_SIZES};
+use super::command::{Command, TEXT_SIZES, keys_text};
 use super::inspector::Selection;
 use super::keep::KeepOffer;
 use super::lists::{Subject, offer_ui};
@@ -287,7 +287,7 @@ fn labelled_item(ui: &mut Ui, command: Command, name: &str, chosen: &mut Option<
 fn with_keys<'a>(ui: &Ui, command: Command, name: &str) -> Button<'a> {
     let button = Button::new(name.to_owned());
     match command.shortcut() {
-        Some(shortcut) => button.shortcut_text(ui.ctx().format_shortcut(&shortcut)),
+        Some(shortcut) => button.shortcut_text(keys_text(ui.ctx(), &shortcut)),
         None => button,
     }
 }

@@ -5,7 +5,7 @@ use eframe::egui::{
 };
 
 use super::app::App;
-use super::command::Command;
+use super::command::{Command, keys_text};
 use crate::document::TEMPLATES;
 use crate::document::examples::EXAMPLES;
 
@@ -97,7 +97,7 @@ impl Palette {
             for (i, Entry { command, title, refusal }) in found.iter().enumerate() {
                 let mut button = Button::selectable(i == self.at, title);
                 if let Some(keys) = command.shortcut() {
-                    button = button.shortcut_text(ui.ctx().format_shortcut(&keys));
+                    button = button.shortcut_text(keys_text(ui.ctx(), &keys));
                 }
                 let button = button.min_size(vec2(ui.available_width(), 0.0));
                 let response = ui.add_enabled(refusal.is_none(), button);

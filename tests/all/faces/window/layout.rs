@@ -66,7 +66,8 @@ fn sizes_and_hidden_panels_are_remembered_until_the_layout_is_reset() {
     let mut window = Window::with_scene(SCENE, Vec::new());
     let first = window.view();
     assert!(!window.settings_text().contains("[layout]"), "nothing was changed yet");
-    let edge = first.left_center();
+    // The divider is grabbed on the panel's side.
+    let edge = first.left_center() - vec2(2.0, 0.0);
     window.drag(edge, edge + vec2(70.0, 0.0));
     let wide = window.view();
     assert!((wide.left() - first.left() - 70.0).abs() < 5.0, "{first} {wide}");
