@@ -113,7 +113,7 @@ fn read_all(reader: &Reader, cases: usize, folder: &Path) {
     }
     println!("{}: {read} of {cases} broken files are read", reader.name);
     assert!(
-        (read > 0) == reader.reads_some && read < cases,
+        (read > 0 || !reader.reads_some) && read < cases,
         "{}: {read} of {cases} are read",
         reader.name
     );

@@ -28,7 +28,7 @@ pub(super) struct Reader {
     pub(super) read: fn(&Path) -> bool,
     /// Broken files to try in a short run.
     pub(super) cases: usize,
-    /// Whether some of them may be read: not where every byte has a checksum.
+    /// Whether some of them must be read: not where nearly every byte has a checksum.
     pub(super) reads_some: bool,
 }
 
