@@ -1,6 +1,5 @@
 //! A colour that can be edited: a swatch that opens a picker, and three numbers in linear light.
 
-use eframe::egui::style::StyleModifier;
 use eframe::egui::{
     Color32, CornerRadius, Id, Popup, PopupCloseBehavior, Rect, Response, Role, Sense, Stroke,
     StrokeKind, Ui, WidgetInfo, vec2,
@@ -41,8 +40,6 @@ impl ColorField<'_> {
         let id = response.id;
         self.menu_ui(&response, color, &mut edit);
         let popup = Popup::menu(&response).id(id.with("picker"));
-        // Its fields look like fields, not like the items of a menu.
-        let popup = popup.style(StyleModifier::default());
         let popup = popup.close_behavior(PopupCloseBehavior::CloseOnClickOutside);
         popup.show(|ui| edit.join(picker_ui(ui, id, self, color)));
         response.on_hover_ui(|ui| {

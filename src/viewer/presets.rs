@@ -72,7 +72,11 @@ impl Presets {
         if ui.is_rect_visible(rect) {
             self.paint(ui, index, rect);
             if response.hovered() || response.has_focus() {
-                let stroke = Stroke::new(2.0, ui.visuals().selection.stroke.color);
+                let color = match response.is_pointer_button_down_on() {
+                    true => ui.visuals().hyperlink_color,
+                    false => ui.visuals().selection.stroke.color,
+                };
+                let stroke = Stroke::new(2.0, color);
                 ui.painter().rect_stroke(rect, 2.0, stroke, StrokeKind::Inside);
             }
         }

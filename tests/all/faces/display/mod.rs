@@ -8,6 +8,7 @@ mod graphics;
 mod looks;
 mod pictures;
 mod pixel;
+mod presets;
 mod recovery;
 mod server;
 mod twin;
