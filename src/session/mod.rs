@@ -51,7 +51,8 @@ use regrow::{Patch, Regrow};
 use trace::{Keep, Kept, TraceError, TraceReport, trace};
 
 /// A scene, its kept trees, and its picture, always in step: after every successful call the frame
-/// is what a fresh trace of [`Session::scene`] gives, bit for bit.
+/// is what a fresh trace of [`Session::scene`] gives, bit for bit. A session that a graphics card shows
+/// may put the drawing off: then it is so after `catch_up`, and nobody gets a frame before.
 pub struct Session {
     scene: Arc<Scene>,
     options: Options,
