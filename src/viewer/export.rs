@@ -5,6 +5,7 @@ use std::path::Path;
 use eframe::egui::{Checkbox, DragValue, Ui};
 
 use super::number::typed;
+use super::question::first;
 use crate::film::plates::Region;
 use crate::film::write::Format;
 use crate::scene::MAX_SIDE;
@@ -106,7 +107,9 @@ impl ExportForm {
         });
         let mut choice = None;
         ui.horizontal(|ui| {
-            if ui.button("Choose file…").on_hover_text("Asks where to write it").clicked() {
+            let go_on = ui.button("Choose file…").on_hover_text("Asks where to write it");
+            first(ui, &go_on);
+            if go_on.clicked() {
                 choice = Some(ExportChoice::GoOn);
             }
             if ui.button("Cancel").on_hover_text("Writes nothing").clicked() {

@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use eframe::egui::{Context, RichText, ScrollArea, Ui};
+use eframe::egui::{Context, RichText, Ui};
 
 use super::app::App;
 use super::dialog::{Purpose, Question, with_ending};
 use super::files::{Done, For, Modal, Source};
+use super::question::{first, scroll_up_to};
 use crate::document::Document;
 use crate::import::{self, MAPPING, Note};
 use crate::scene::Scene;
@@ -88,7 +89,7 @@ pub(super) fn imported_ui(ui: &mut Ui, failed: bool, text: &str) -> bool {
         ui.heading("The file is imported");
         ui.label("What was left out, guessed or added:");
     }
-    ScrollArea::both().max_height(360.0).auto_shrink([true, true]).show(ui, |ui| {
+    scroll_up_to(360.0).show(ui, |ui| {
         ui.label(RichText::new(text).monospace());
     });
     if !failed {
@@ -97,5 +98,7 @@ pub(super) fn imported_ui(ui: &mut Ui, failed: bool, text: &str) -> bool {
         });
         header.header_response.on_hover_text("How each format is mapped to a scene");
     }
-    ui.button("Close").on_hover_text("Goes on with the scene that is open").clicked()
+    let close = ui.button("Close").on_hover_text("Goes on with the scene that is open");
+    first(ui, &close);
+    close.clicked()
 }

@@ -1,9 +1,10 @@
 //! The list of keys and gestures.
 
-use eframe::egui::{Context, Grid, Id, Modal, RichText, ScrollArea, Ui};
+use eframe::egui::{Context, Grid, RichText, Ui};
 
 use super::app::App;
 use super::command::{Command, keys_text};
+use super::question::{first, question, scroll_up_to};
 
 /// What the pointer does, and keys that are no commands.
 const GESTURES: [(&str, &str); 13] = [
@@ -28,7 +29,7 @@ impl App {
         if !self.shows_keys {
             return;
         }
-        let shown = Modal::new(Id::unique("keys")).show(ctx, list_ui);
+        let shown = question(ctx, "keys", list_ui);
         self.shows_keys = !shown.inner && !shown.should_close();
     }
 }
@@ -37,8 +38,7 @@ impl App {
 fn list_ui(ui: &mut Ui) -> bool {
     ui.heading("Keys and gestures");
     let height = ui.ctx().content_rect().height() - 140.0;
-    let list = ScrollArea::vertical().max_height(height).auto_shrink([true, true]);
-    list.show(ui, |ui| {
+    scroll_up_to(height).show(ui, |ui| {
         Grid::new("keys").num_columns(3).spacing([18.0, 4.0]).show(ui, |ui| {
             for (command, keys) in keyed() {
                 ui.monospace(keys_text(ui.ctx(), &keys));
@@ -56,7 +56,9 @@ fn list_ui(ui: &mut Ui) -> bool {
             }
         });
     });
-    ui.button("Close").on_hover_text("Goes back to the window").clicked()
+    let close = ui.button("Close").on_hover_text("Goes back to the window");
+    first(ui, &close);
+    close.clicked()
 }
 
 /// Commands with keys, in the order of the menus.

@@ -56,6 +56,7 @@ mod pixel_lines;
 mod pixel_marks;
 mod pixel_rows;
 mod presets;
+mod question;
 mod rename;
 mod screen;
 mod slider;

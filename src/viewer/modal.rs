@@ -1,6 +1,6 @@
 //! The questions over the window.
 
-use eframe::egui::{Context, Id, Modal as EguiModal, RichText, ScrollArea, Ui};
+use eframe::egui::{Context, RichText, Ui};
 
 use super::app::App;
 use super::dialog::Purpose;
@@ -8,6 +8,7 @@ use super::export::ExportChoice;
 use super::files::{For, Modal, Next, Source};
 use super::import::imported_ui;
 use super::path_field::Choice;
+use super::question::{first, question, scroll_up_to};
 use crate::document::recovery::Found;
 use crate::document::{FileKind, Missing, Save};
 
@@ -29,7 +30,7 @@ impl App {
     /// Shows the question that waits, if any, and does what was answered.
     pub(super) fn modals(&mut self, ctx: &Context) {
         let Some(modal) = self.files.take_modal() else { return };
-        let shown = EguiModal::new(Id::unique("question")).show(ctx, |ui| match modal {
+        let shown = question(ctx, "question", |ui| match modal {
             Modal::Unsaved(next) => self.unsaved_ui(ui, next),
             Modal::Export(mut form) => match form.ui(ui) {
                 None => Some(Modal::Export(form)),
@@ -69,9 +70,9 @@ impl App {
                         stays = false;
                     }
                     let about = "Goes on with the scene that is open";
-                    if ui.button("Close").on_hover_text(about).clicked() {
-                        stays = false;
-                    }
+                    let close = ui.button("Close").on_hover_text(about);
+                    first(ui, &close);
+                    stays &= !close.clicked();
                 });
                 stays.then_some(Modal::BadScene { source, located, message, missing })
             }
@@ -115,8 +116,8 @@ impl App {
         ui.heading("The file was changed by another program");
         ui.label(&message);
         let choices = [
-            ("Overwrite", "Replaces the file; the one before it becomes NAME~", Overwrite::Yes),
             ("Save as…", "Asks for another file", Overwrite::Elsewhere),
+            ("Overwrite", "Replaces the file; the one before it becomes NAME~", Overwrite::Yes),
             ("Cancel", "Saves nothing", Overwrite::No),
         ];
         match buttons_ui(ui, choices) {
@@ -139,7 +140,11 @@ impl App {
         let mut discarded = None;
         for (i, item) in found.iter().enumerate() {
             ui.horizontal(|ui| {
-                if ui.button("Recover").on_hover_text("Opens it, still unsaved").clicked() {
+                let recover = ui.button("Recover").on_hover_text("Opens it, still unsaved");
+                if i == 0 {
+                    first(ui, &recover);
+                }
+                if recover.clicked() {
                     opened = Some(i);
                 }
                 if ui.button("Discard").on_hover_text("Deletes it for good").clicked() {
@@ -167,12 +172,17 @@ fn closes_lightly(modal: &Option<Modal>) -> bool {
     !matches!(modal, Some(Modal::Recover(_)))
 }
 
-/// A row of buttons, each with its name, what it does, and what it means; what was pressed.
+/// A row of buttons, each with its name, what it does, and what it means; what was pressed. Enter
+/// presses the first.
 fn buttons_ui<T>(ui: &mut Ui, choices: [(&str, &str, T); 3]) -> Option<T> {
     let mut pressed = None;
     ui.horizontal(|ui| {
-        for (name, about, meaning) in choices {
-            if ui.button(name).on_hover_text(about).clicked() {
+        for (i, (name, about, meaning)) in choices.into_iter().enumerate() {
+            let button = ui.button(name).on_hover_text(about);
+            if i == 0 {
+                first(ui, &button);
+            }
+            if button.clicked() {
                 pressed = Some(meaning);
             }
         }
@@ -183,7 +193,7 @@ fn buttons_ui<T>(ui: &mut Ui, choices: [(&str, &str, T); 3]) -> Option<T> {
 fn bad_scene_ui(ui: &mut Ui, message: &str) {
     ui.heading("The scene cannot be opened");
     ui.set_max_width(760.0);
-    ScrollArea::both().max_height(400.0).auto_shrink([true, true]).show(ui, |ui| {
+    scroll_up_to(400.0).show(ui, |ui| {
         ui.label(RichText::new(message).monospace());
     });
 }

@@ -1,11 +1,12 @@
 //! The palette: every command, found by some letters of its name.
 
 use eframe::egui::{
-    Button, Context, Id, Key, Label, Modal, Modifiers, RichText, ScrollArea, TextEdit, Ui, vec2,
+    Button, Context, Key, Label, Modifiers, RichText, ScrollArea, TextEdit, Ui, vec2,
 };
 
 use super::app::App;
 use super::command::{Command, keys_text};
+use super::question::question;
 use crate::document::TEMPLATES;
 use crate::document::examples::EXAMPLES;
 
@@ -120,7 +121,7 @@ impl App {
     pub(super) fn palette_ui(&mut self, ctx: &Context) -> Option<Command> {
         let mut palette = self.palette.take()?;
         let entries = self.palette_entries();
-        let shown = Modal::new(Id::unique("palette")).show(ctx, |ui| palette.ui(ui, entries));
+        let shown = question(ctx, "palette", |ui| palette.ui(ui, entries));
         if shown.inner.is_none() && !shown.should_close() {
             self.palette = Some(palette);
         }

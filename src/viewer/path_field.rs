@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 
-use eframe::egui::{Context, Key, ScrollArea, TextEdit, Ui};
+use eframe::egui::{Context, Key, TextEdit, Ui};
 
 use super::dialog::{Question, with_ending};
+use super::question::scroll_up_to;
 
 /// Most names shown.
 const MOST_NAMES: usize = 500;
@@ -126,7 +127,7 @@ impl PathField {
         let writes = self.question.purpose.writes();
         let folder = self.folder.clone().unwrap_or_default();
         let mut chosen = None;
-        ScrollArea::vertical().max_height(220.0).auto_shrink([false, true]).show(ui, |ui| {
+        scroll_up_to(220.0).auto_shrink([false, true]).show(ui, |ui| {
             if let Some(above) = folder.parent()
                 && ui.selectable_label(false, "../").on_hover_text("The folder above").clicked()
             {

@@ -331,6 +331,16 @@ fn every_line_of_the_palette_has_a_name_and_a_tooltip() {
 }
 
 #[test]
+fn the_button_of_the_list_of_keys_has_a_name_and_a_tooltip() {
+    let mut window = tall();
+    let before = window.controls();
+    window.key(Modifiers::NONE, Key::Questionmark);
+    window.until_text("Keys and gestures");
+    window.harness.run_steps(3);
+    window.walk(&before, 1);
+}
+
+#[test]
 fn every_button_of_the_questions_has_a_name_and_a_tooltip() {
     let mut window = tall();
     let before = window.controls();

@@ -81,3 +81,63 @@ fn a_file_that_another_program_changed_is_not_replaced_silently() {
     assert!(window.scene_text() != foreign);
     assert_eq!(std::fs::read_to_string(window.file("scene.toml~")).unwrap(), foreign);
 }
+
+impl Window {
+    /// Presses the slider of diffuse, which keeps the keyboard, and waits for its tooltip.
+    fn use_a_slider(&mut self) {
+        self.drag_slider("diffuse", 0.9);
+        let at = self.rect(Role::Slider, "diffuse").center();
+        self.harness.hover_at(at + vec2(2.0, 0.0));
+        self.harness.hover_at(at);
+        self.harness.run_steps(10);
+        assert_eq!(self.tooltips(), 1, "the slider explains itself");
+    }
+
+    fn tooltips(&self) -> usize {
+        let layers = self.harness.ctx.memory(|m| m.areas().visible_layer_ids());
+        layers.iter().filter(|layer| layer.order == eframe::egui::Order::Tooltip).count()
+    }
+}
+
+#[test]
+fn enter_answers_a_question_whatever_had_the_keyboard() {
+    let mut window = Window::with_scene(SCENE, vec![Answer::NoService]);
+    window.click("mirror");
+    window.use_a_slider();
+    window.key(Modifiers::COMMAND, Key::E);
+    window.until_text("Export the picture");
+    window.harness.run_steps(3);
+    assert_eq!(window.tooltips(), 0, "nothing of the window stays above the question");
+    window.key(Modifiers::NONE, Key::Enter);
+    window.until_text("The system offers no file dialog here");
+    let file = window.file("entered.png");
+    window.key(Modifiers::COMMAND, Key::A);
+    window.write(&file.display().to_string());
+    window.key(Modifiers::NONE, Key::Enter);
+    window.until_text("wrote ");
+    assert!(file.exists());
+
+    window.use_a_slider();
+    window.menu(&["File", "New", "Empty stage"]);
+    window.until_text("Save the changes to");
+    window.key(Modifiers::NONE, Key::Enter);
+    window.until("it is saved and replaced", |app| app.document().title() == "Empty stage");
+    assert!(window.scene_text() != SCENE);
+}
+
+#[test]
+fn another_control_of_a_question_may_have_the_keyboard() {
+    let mut window = Window::with_scene(SCENE, Vec::new());
+    window.key(Modifiers::COMMAND, Key::E);
+    window.until_text("Export the picture");
+    window.harness.run_steps(3);
+    window.key(Modifiers::NONE, Key::Tab);
+    window.key(Modifiers::NONE, Key::Enter);
+    assert!(!window.shows("Export the picture"), "Cancel follows, and was pressed");
+
+    window.key(Modifiers::NONE, Key::Questionmark);
+    window.until_text("Keys and gestures");
+    window.harness.run_steps(3);
+    window.key(Modifiers::NONE, Key::Enter);
+    assert!(!window.shows("Keys and gestures"), "Close had the keyboard");
+}
