@@ -135,7 +135,8 @@ impl PixelPanel {
         let mut outcome = PixelOutcome::default();
         ui.horizontal(|ui| self.head_ui(ui, &mut outcome));
         let size = ui.available_size();
-        let [left, right] = [230.0, (size.x * 0.24).clamp(230.0, 460.0)];
+        // In the least width "after 10 bounces" stands beside its number and its bar.
+        let [left, right] = [220.0, (size.x * 0.24).clamp(295.0, 460.0)];
         let spaces = 2.0 * (ui.spacing().item_spacing.x * 2.0 + 6.0);
         let middle = (size.x - left - right - spaces).clamp(200.0, 760.0);
         ui.horizontal_top(|ui| {

@@ -26,12 +26,13 @@ pub(super) struct Mending {
 
 impl Mending {
     /// Begins a plan of `whole`: the tiles of the region first, then those nearest to the cursor, in
-    /// pixels.
+    /// pixels. Until a coarse picture of the plan's scene comes, the one before it stands in.
     pub(super) fn new(
         whole: &mut Session,
         scene: Arc<Scene>,
         mut plan: Plan,
         (region, cursor): (Option<Region>, Option<[f64; 2]>),
+        before: Option<&Frame>,
     ) -> Mending {
         let layout = whole.transport().layout;
         if let Some(cursor) = cursor {
@@ -47,9 +48,14 @@ impl Mending {
         let change = Change::between(whole.scene(), &scene);
         let regrow = Arc::new(whole.regrow(scene.clone(), &change, plan.clone()));
         let frame = Arc::new(Frame::new(layout.size));
+        // Without lights that are elsewhere now the picture ahead would flash dark.
+        let old = (before.is_none() && change.shadows).then(|| {
+            whole.catch_up();
+            whole.shared_frame()
+        });
         let mut mending =
             Mending { regrow, scene: scene.clone(), patches: Vec::new(), pending: vec![], frame };
-        mending.show(whole, scene, &plan, None);
+        mending.show(whole, scene, &plan, before.or(old.as_deref()));
         mending
     }
 
@@ -144,7 +150,8 @@ fn forget(pending: &mut [Option<Box<[u16; TILE_BLOCKS]>>], patch: &Patch) {
     }
 }
 
-/// A pixel that is not final: of the coarse picture, or a mark.
+/// A pixel that is not final: of the coarse picture, or a mark. On a coarse picture, which looks
+/// coarse, marks are faint.
 fn draw_pending(frame: &mut Frame, [x, y]: [u32; 2], coarse: Option<&Frame>) {
     let [width, height] = frame.size;
     let at = (y as usize * width as usize + x as usize) * 4;
@@ -155,8 +162,9 @@ fn draw_pending(frame: &mut Frame, [x, y]: [u32; 2], coarse: Option<&Frame>) {
         frame.bytes[at..at + 4].copy_from_slice(&coarse.bytes[from..from + 4]);
     }
     if x % BLOCK == 1 && y % BLOCK == 1 {
+        let contrast = if coarse.is_some() { 32 } else { 96 };
         for byte in &mut frame.bytes[at..at + 3] {
-            *byte = if *byte < 128 { *byte + 96 } else { *byte - 96 };
+            *byte = if *byte < 128 { *byte + contrast } else { *byte - contrast };
         }
     }
 }

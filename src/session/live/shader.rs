@@ -383,16 +383,20 @@ impl Shader {
         let reason = work.reason().to_owned();
         let mending = match (work, &mut self.whole) {
             (Work::Regrow(plan), Some(whole)) => {
-                Some(Mending::new(whole, scene.clone(), plan, (self.region, self.board.cursor())))
+                // What a dropped trace of other surfaces left is no picture of this scene.
+                let is_like = |p: &mut Preview| {
+                    let change = Change::between(&p.scene, &scene);
+                    p.stage == Stage::Coarse && !change.everything
+                };
+                self.preview = self.preview.take_if(is_like);
+                let before = self.preview.as_ref().map(|p| p.session.shared_frame());
+                let first = (self.region, self.board.cursor());
+                Some(Mending::new(whole, scene.clone(), plan, first, before.as_deref()))
             }
             _ => None,
         };
         let trees = match mending {
-            // What a dropped trace left is no picture of this scene.
-            Some(_) => {
-                self.preview = None;
-                None
-            }
+            Some(_) => None,
             None => self.whole.as_mut().map(Session::take_trees),
         };
         let reuse = Arc::new(Mutex::new(trees));

@@ -143,6 +143,36 @@ fn a_light_that_is_dragged_ends_where_it_is_dropped() {
     assert_eq!(window.last().rays.camera, 0);
 }
 
+/// A light that was moved has no place in the matrix yet: without it all would be dark.
+#[test]
+fn a_light_that_is_dragged_never_goes_out() {
+    let scene = with(&scene("whitted", [320, 180], 4), "lights.key.intensity", "[3, 3, 3]");
+    let at = |i: usize| with(&scene, "lights.key.point", &format!("[-4, {}, 7]", i as f64 * 0.05));
+    let mean = |frame: &Frame| {
+        let bytes = frame.bytes.iter().map(|byte| u64::from(*byte));
+        bytes.sum::<u64>() as f64 / frame.bytes.len() as f64
+    };
+    let dark = mean(fresh(&with(&scene, "lights.key.on", "false")).frame());
+    let bright = mean(fresh(&scene).frame());
+    let bound = (dark + bright) / 2.0;
+    assert!(dark < 0.8 * bright, "{dark} {bright}");
+    let mut window = Window::showing(&scene);
+    let mut count = 0;
+    for i in 0..40 {
+        window.want(&at(i));
+        std::thread::sleep(Duration::from_millis(12));
+        while let Some(shown) = window.live.take_shown() {
+            let mean = mean(shown.frame.as_ref().unwrap());
+            assert!(mean > bound, "{:?} at {i}: {mean}, lit {bright}, dark {dark}", shown.stage);
+            count += usize::from(shown.stage != Stage::Whole);
+            window.newest = Some(shown);
+        }
+    }
+    assert!(count > 3, "{count} pictures on the way");
+    window.wait("the last place", |w| w.status.in_step);
+    window.shows_whole(&at(39));
+}
+
 #[test]
 fn edits_while_pixels_are_grown_end_as_a_fresh_session() {
     let scene = slow();

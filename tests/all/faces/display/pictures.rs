@@ -25,12 +25,15 @@ fn until_still(desk: &Desk) {
     }
 }
 
-/// Shows one window after the other: the scene, a material, a light, and questions.
+/// Shows one window after the other: the scene, a material, a light, a solid, all panels, and
+/// questions.
 fn take_pictures(size: [u16; 2], zoom_percent: u32, theme: &str) {
     let mut desk = Desk::new(size);
     let scene =
         include_str!("../../../../scenes/whitted.toml").replace("[1280, 720]", "[640, 360]");
     std::fs::write(desk.file("scene.toml"), scene).unwrap();
+    // The outline begins at the upper left, whatever the size of the window.
+    let twin = Twin::new(&desk.file("scene.toml"), None);
     let settings = desk.file("config/rayforest");
     std::fs::create_dir_all(&settings).unwrap();
     let text = format!("theme = \"{theme}\"\nzoom_percent = {zoom_percent}\n");
@@ -45,8 +48,8 @@ fn take_pictures(size: [u16; 2], zoom_percent: u32, theme: &str) {
     let at = |p: Pos2| (p.to_vec2() * (zoom_percent as f32 / 100.0)).to_pos2();
     let rest = pos2(f32::from(size[0]) * 0.07, f32::from(size[1]) * 0.8);
     take("scene", &desk);
-    for (name, row) in [("material", 120.0), ("light", 195.0), ("solid", 245.0)] {
-        desk.click(at(pos2(58.0, row)));
+    for (name, line) in [("material", "glass"), ("light", "key"), ("solid", "glass-ball")] {
+        desk.click(at(twin.rect(Role::Button, line).center()));
         until_still(&desk);
         desk.point(rest);
         take(name, &desk);
@@ -71,6 +74,29 @@ fn take_pictures(size: [u16; 2], zoom_percent: u32, theme: &str) {
     take("pixel", &desk);
     desk.point(pos2(f32::from(size[0]) * 0.32, f32::from(size[1]) - at(pos2(0.0, 150.0)).y));
     take("pixel-line", &desk);
+    desk.press("i");
+    for (name, command) in [
+        ("mass", "Mass properties"),
+        ("chart", "Speed and accuracy"),
+        ("mixer", "Light mixer"),
+        ("looks", "Looks"),
+        ("keys", "Keys and gestures"),
+    ] {
+        let choose = |desk: &Desk| {
+            desk.press("ctrl+k");
+            until_still(desk);
+            desk.server.xdotool(&["type", command]);
+            until_still(desk);
+            desk.press("Return");
+        };
+        choose(&desk);
+        desk.point(rest);
+        take(name, &desk);
+        match name {
+            "keys" => desk.press("Escape"),
+            _ => choose(&desk),
+        }
+    }
 }
 
 #[test]
