@@ -50,6 +50,8 @@ pub struct Document {
     history: History,
     /// Whether it was found after a crash and the scene of its file is not known.
     is_rescued: bool,
+    /// Whether another program moved or deleted its file.
+    is_gone: bool,
     is_unsaved: bool,
 }
 
@@ -210,7 +212,7 @@ impl Document {
         self.path.as_deref().map_or_else(|| self.name.clone(), file_name)
     }
 
-    /// Whether the scene differs from its file.
+    /// Whether the scene differs from its file, or the file is gone.
     pub fn is_unsaved(&self) -> bool {
         self.is_unsaved
     }
@@ -249,7 +251,13 @@ impl Document {
         self.saved = Arc::clone(&save.scene);
         self.base = Base { text, scene: save.scene };
         self.path = Some(save.path);
-        self.is_rescued = false;
+        (self.is_rescued, self.is_gone) = (false, false);
+        self.refresh();
+    }
+
+    /// Notes whether its file is gone: what is here is then all there is, and counts as unsaved.
+    pub fn set_gone(&mut self, is_gone: bool) {
+        self.is_gone = is_gone;
         self.refresh();
     }
 
@@ -267,7 +275,8 @@ impl Document {
 
     /// Compares with the file, once an edit rather than once a frame.
     fn refresh(&mut self) {
-        self.is_unsaved = self.is_rescued || !same_bits(self.history.scene(), &self.saved);
+        let differs = || !same_bits(self.history.scene(), &self.saved);
+        self.is_unsaved = self.is_rescued || self.is_gone || differs();
     }
 }
 

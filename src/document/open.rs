@@ -30,6 +30,7 @@ impl Document {
             disk: None,
             history: History::new(scene),
             is_rescued: false,
+            is_gone: false,
             is_unsaved: false,
         }
     }

@@ -93,13 +93,23 @@ impl Document {
     /// before, with its edits.
     pub fn load_theirs(&mut self, theirs: Document) {
         let name = format!("load {} from disk", self.title());
-        let Document { name: _, path: _, base, saved, disk, history, is_rescued, is_unsaved: _ } =
-            theirs;
+        let Document {
+            name: _,
+            path: _,
+            base,
+            saved,
+            disk,
+            history,
+            is_rescued,
+            is_gone,
+            is_unsaved: _,
+        } = theirs;
         self.history.end_gesture();
         self.history.change((**history.scene()).clone());
         self.history.name_step(name);
         self.history.end_gesture();
         (self.base, self.saved, self.disk, self.is_rescued) = (base, saved, disk, is_rescued);
+        self.is_gone = is_gone;
         self.refresh();
     }
 

@@ -63,6 +63,8 @@ pub struct App {
     pub(super) recovery: Option<Recovery>,
     /// Index of the solid that was clicked or selected last.
     pub(super) picked: Option<usize>,
+    /// The selection, and that, before the latest click in the picture.
+    before_pick: Option<(Selection, Option<usize>)>,
     /// The name that is being changed, if one is.
     pub(super) renaming: Option<Renaming>,
     /// Materials to choose from.
@@ -148,6 +150,7 @@ impl App {
             welcome: Welcome::default(),
             recovery,
             picked: None,
+            before_pick: None,
             renaming: None,
             presets: Presets::default(),
             outlined: Outlined::default(),
@@ -188,11 +191,12 @@ impl App {
         self.receive(ui);
         self.receive_files(&ctx);
         self.receive_material(&ctx);
+        self.open_palette(&ctx);
         let mut commands = self.shortcuts(&ctx);
         let mut edited = self.document.scene().clone();
         let mut changed = false;
         self.bars(ui, &mut commands);
-        self.on_disk_ui(ui);
+        self.make_room(ui.available_height());
         let step = self.mixer_ui(ui, &mut edited, &mut changed);
         let step = step.or(self.chart_ui(ui, &mut edited, &mut changed));
         self.mass_ui(ui);
@@ -414,6 +418,7 @@ impl App {
                 self.pixel.mark_ui(ui, [place, view], edited.picture.size);
                 let dropped = self.carried_ui(ui, [place, view], edited);
                 self.notices.ui(ui);
+                self.on_disk_ui(ui);
                 (outcome, handled, dropped)
             })
             .inner;
@@ -424,7 +429,11 @@ impl App {
         }
         self.pixel.look(outcome.hovered, outcome.clicked, edited.picture.size);
         let mut focused = false;
-        if let Some(point) = outcome.clicked {
+        if outcome.cropped && outcome.clicked.is_some() {
+            // The first click of the two that took the region away was no choice.
+            (self.selection, self.picked) =
+                self.before_pick.take().unwrap_or((self.selection, self.picked));
+        } else if let Some(point) = outcome.clicked {
             match self.picture.focus_tool {
                 true => focused = self.focus(point, &mut edited.camera),
                 false => self.pick(point, edited, ui.input(|i| i.modifiers.alt)),
@@ -462,6 +471,7 @@ impl App {
     /// Selects what is seen at a point of the picture: its material, or itself.
     fn pick(&mut self, point: [f64; 2], edited: &Scene, itself: bool) {
         let (Some(picked), Some(shown)) = (self.live.pick(point), &self.shown) else { return };
+        self.before_pick = Some((self.selection, self.picked));
         self.picked = Some(picked.solid);
         // The picture may show an earlier scene, whose materials had other indices.
         let name = shown.scene.materials.get(picked.material).map(|material| &material.name);

@@ -1,9 +1,11 @@
 //! Copies to the clipboard, and gives what was pasted to the one control that asked for it.
 
+use std::time::Duration;
+
 use eframe::egui::{Context, Event, Id, ViewportCommand};
 
-/// How long the clipboard may take to answer, in seconds.
-const PATIENCE: f64 = 2.0;
+/// How long the clipboard may take to answer.
+const PATIENCE: Duration = Duration::from_secs(1);
 
 /// A control that waits for the clipboard.
 #[derive(Clone, Copy, Debug)]
@@ -22,13 +24,25 @@ pub(super) fn ask(ctx: &Context, by: Id) {
     let at = ctx.input(|input| input.time);
     ctx.data_mut(|data| data.insert_temp(place(), Asked { by, at }));
     ctx.send_viewport_cmd(ViewportCommand::RequestPaste);
+    ctx.request_repaint_after(PATIENCE);
+}
+
+/// Whether a control asked, and the clipboard turned out to hold no text; said once.
+pub(super) fn is_empty(ctx: &Context) -> bool {
+    let now = ctx.input(|input| input.time);
+    let asked = ctx.data(|data| data.get_temp::<Asked>(place()));
+    let is_empty = asked.is_some_and(|asked| now - asked.at >= PATIENCE.as_secs_f64());
+    if is_empty {
+        ctx.data_mut(|data| data.remove::<Asked>(place()));
+    }
+    is_empty
 }
 
 /// What was pasted for this control: it asked for it, or has the keyboard.
 pub(super) fn pasted(ctx: &Context, id: Id, has_keyboard: bool) -> Option<String> {
     let now = ctx.input(|input| input.time);
     let asked = ctx.data(|data| data.get_temp::<Asked>(place()));
-    let asked = asked.filter(|asked| now - asked.at < PATIENCE);
+    let asked = asked.filter(|asked| now - asked.at < PATIENCE.as_secs_f64());
     match asked {
         Some(asked) if asked.by != id => return None,
         None if !has_keyboard => return None,

@@ -25,9 +25,14 @@ pub(super) enum Run {
 }
 
 impl App {
+    /// Whether keys belong to the window and not to a question over it.
+    pub(super) fn takes_keys(&self) -> bool {
+        !self.files.is_modal() && self.palette.is_none() && !self.shows_keys
+    }
+
     /// The commands whose keys were pressed.
     pub(super) fn shortcuts(&self, ctx: &Context) -> Vec<Command> {
-        if self.files.is_modal() || self.palette.is_some() || self.shows_keys {
+        if !self.takes_keys() {
             return Vec::new();
         }
         let focused = ctx.egui_wants_keyboard_input() && !slider::has_keyboard(ctx);

@@ -17,6 +17,8 @@ pub enum Purpose {
     Open,
     /// A scene file to write.
     Save,
+    /// The scene file of an imported one.
+    SaveImported,
     /// A picture file to write.
     Export,
     /// A mesh that was not found.
@@ -35,6 +37,7 @@ impl Purpose {
         match self {
             Purpose::Open => "Open a scene",
             Purpose::Save => "Save the scene",
+            Purpose::SaveImported => "Save the imported scene as",
             Purpose::Export => "Export the picture",
             Purpose::LocateMesh => "Find the mesh",
             Purpose::LocateImage => "Find the image",
@@ -45,14 +48,14 @@ impl Purpose {
 
     /// Whether the file is written rather than read.
     pub fn writes(self) -> bool {
-        matches!(self, Purpose::Save | Purpose::Export)
+        matches!(self, Purpose::Save | Purpose::SaveImported | Purpose::Export)
     }
 
     /// What the files are called and how their names end.
     pub fn filter(self) -> (&'static str, &'static [&'static str]) {
         match self {
             Purpose::Open => ("Scenes, and pictures with theirs", &["toml", "png", "exr", "hdr"]),
-            Purpose::Save => ("Rayforest scenes", &["toml"]),
+            Purpose::Save | Purpose::SaveImported => ("Rayforest scenes", &["toml"]),
             Purpose::Export => ("Pictures", &["png", "exr", "hdr"]),
             Purpose::LocateMesh => ("Meshes", &["obj"]),
             Purpose::LocateImage | Purpose::Image => ("Images", &["png", "jpg", "jpeg", "hdr"]),
@@ -198,12 +201,17 @@ impl Dialogs for ScriptedDialogs {
     }
 }
 
-/// `path` with the ending that the purpose asks for, if it has none.
+/// `path` with the ending that the purpose asks for, if it has none. A scene's file has its own ending
+/// behind any other, so that no file of another kind is written over. A picture with another ending
+/// stays as it is: its format is refused.
 pub(super) fn with_ending(path: &Path, purpose: Purpose) -> PathBuf {
     let (_, endings) = purpose.filter();
     match path.extension() {
         None => path.with_extension(endings[0]),
-        Some(_) => path.to_owned(),
+        Some(ending) if purpose == Purpose::Export || endings.iter().any(|e| ending == *e) => {
+            path.to_owned()
+        }
+        Some(_) => PathBuf::from(format!("{}.{}", path.display(), endings[0])),
     }
 }
 
@@ -217,6 +225,10 @@ mod tests {
     fn a_name_without_ending_gets_the_usual_one() {
         assert_eq!(with_ending(Path::new("a/b"), Purpose::Save), Path::new("a/b.toml"));
         assert_eq!(with_ending(Path::new("b.exr"), Purpose::Export), Path::new("b.exr"));
+        assert_eq!(with_ending(Path::new("b.jpg"), Purpose::Export), Path::new("b.jpg"));
+        let imported = with_ending(Path::new("b.obj"), Purpose::SaveImported);
+        assert_eq!(imported, Path::new("b.obj.toml"));
+        assert_eq!(with_ending(&imported, Purpose::Save), imported);
     }
 
     /// Dialogs that were asked `ago`, whether one took the keyboard, and the way to answer.

@@ -11,6 +11,9 @@ use crate::film::write::Format;
 use crate::scene::MAX_SIDE;
 use crate::session::layers::Extras;
 
+/// Of the form in points, whatever it says.
+const WIDTH: f32 = 560.0;
+
 /// A picture file that is being asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ExportForm {
@@ -68,6 +71,7 @@ impl ExportForm {
 
     /// Shows the form.
     pub(super) fn ui(&mut self, ui: &mut Ui) -> Option<ExportChoice> {
+        ui.set_width(WIDTH);
         ui.heading("Export the picture");
         ui.horizontal(|ui| {
             for (format, name, about) in [
@@ -97,7 +101,11 @@ impl ExportForm {
         });
         self.extras_ui(ui);
         let own = self.size == self.own_size && !self.alpha && !self.cut;
-        ui.weak(if own {
+        let linear = matches!(self.format, Format::Exr | Format::Hdr);
+        ui.weak(if own && linear {
+            "The file holds the light of the picture shown, without exposure and tone, and its scene: \
+             opening the picture opens the scene."
+        } else if own {
             "The file holds exactly the bytes of the picture shown, and its scene: opening the \
              picture opens the scene."
         } else if self.size == self.own_size {

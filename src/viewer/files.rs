@@ -414,7 +414,11 @@ impl App {
                 ctx.request_repaint_after(Duration::from_millis(100));
             }
             Answer::File(file) => self.chosen(ctx, file, what),
-            Answer::Cancelled => {}
+            Answer::Cancelled => {
+                if let Some(modal) = what.back() {
+                    self.files.show(modal);
+                }
+            }
             Answer::NoService => {
                 self.files.show(Modal::Path(PathField::new(question, ctx), what));
             }

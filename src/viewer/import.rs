@@ -32,7 +32,7 @@ impl App {
     pub(super) fn ask_import_target(&mut self, ctx: &Context, source: PathBuf) {
         let name = source.with_extension("toml");
         let question = Question {
-            purpose: Purpose::Save,
+            purpose: Purpose::SaveImported,
             folder: source.parent().unwrap_or(Path::new("")).to_owned(),
             name: name.file_name().unwrap_or_default().to_string_lossy().into_owned(),
         };
@@ -41,11 +41,7 @@ impl App {
 
     /// Converts a file in a thread and opens the scene.
     pub(super) fn import(&mut self, ctx: &Context, source: PathBuf, target: &Path) {
-        // Never the imported file itself, whose ending is another.
-        let target = match target.extension() {
-            Some(ending) if ending != "toml" => PathBuf::from(format!("{}.toml", target.display())),
-            _ => with_ending(target, Purpose::Save),
-        };
+        let target = with_ending(target, Purpose::SaveImported);
         let before = Box::new(self.document.scene().clone());
         self.files.work(ctx, move || {
             let result = Box::new(converted(&source, &target));

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use eframe::egui::{Button, RichText, ScrollArea, Ui};
+use eframe::egui::{Button, RichText, ScrollArea, TextWrapMode, Ui};
 
 use super::badge::badge_ui;
 use super::command::Command;
@@ -164,11 +164,16 @@ pub(super) fn inspector_ui(
 fn links_ui(ui: &mut Ui, scene: &Scene, selection: Selection, outcome: &mut Outcome) {
     match selection {
         Selection::Solid(i) => {
-            ui.horizontal_wrapped(|ui| solid_links_ui(ui, scene, i, outcome));
+            ui.horizontal_wrapped(|ui| {
+                // A name goes to the next line as a whole.
+                ui.style_mut().wrap_mode = Some(TextWrapMode::Extend);
+                solid_links_ui(ui, scene, i, outcome);
+            });
         }
         Selection::Material(i) => {
             let users = users(scene, i);
             ui.horizontal_wrapped(|ui| {
+                ui.style_mut().wrap_mode = Some(TextWrapMode::Extend);
                 if users.is_empty() {
                     ui.weak("No solid is made of it");
                 }

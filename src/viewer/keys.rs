@@ -38,7 +38,7 @@ impl App {
 fn list_ui(ui: &mut Ui) -> bool {
     ui.heading("Keys and gestures");
     let height = ui.ctx().content_rect().height() - 140.0;
-    scroll_up_to(height).show(ui, |ui| {
+    scroll_up_to(height).hscroll(false).show(ui, |ui| {
         Grid::new("keys").num_columns(3).spacing([18.0, 4.0]).show(ui, |ui| {
             for (command, keys) in keyed() {
                 ui.monospace(keys_text(ui.ctx(), &keys));

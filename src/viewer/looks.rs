@@ -22,6 +22,8 @@ use crate::session::live::{Glance, Glimpse, Shown, Stage};
 
 /// Largest thumbnail, in pixels.
 const THUMB: [u32; 2] = [128, 72];
+/// Height of the strip in points: a card and what is around it.
+pub(super) const STRIP: f32 = 112.0;
 /// Largest number of snapshots: each holds a picture.
 const MOST_SNAPSHOTS: usize = 24;
 

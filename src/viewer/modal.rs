@@ -44,7 +44,7 @@ impl App {
             },
             Modal::Path(mut field, what) => match field.ui(ui) {
                 None => Some(Modal::Path(field, what)),
-                Some(Choice::Cancelled) => None,
+                Some(Choice::Cancelled) => what.back(),
                 Some(Choice::File(file)) => {
                     self.chosen(ui.ctx(), file, what);
                     None
@@ -84,9 +84,14 @@ impl App {
             }
         });
         // What an answer itself opened comes before the question that was just answered.
-        if self.files.modal.is_none() && !(shown.should_close() && closes_lightly(&shown.inner)) {
-            self.files.modal = shown.inner;
+        if self.files.modal.is_some() {
+            return;
         }
+        let beside = shown.backdrop_response.clicked();
+        self.files.modal = match shown.should_close() {
+            true if !(beside && holds_to_it(&shown.inner)) => shown.inner.and_then(Modal::back),
+            _ => shown.inner,
+        };
     }
 
     fn unsaved_ui(&mut self, ui: &mut Ui, next: Next) -> Option<Modal> {
@@ -167,9 +172,29 @@ impl App {
     }
 }
 
-/// Whether a click beside the question or Escape answers it: yes, where nothing is lost by it.
-fn closes_lightly(modal: &Option<Modal>) -> bool {
-    !matches!(modal, Some(Modal::Recover(_)))
+/// Whether a click beside a question leaves it open: who found lost work shall not lose the question.
+fn holds_to_it(modal: &Option<Modal>) -> bool {
+    matches!(modal, Some(Modal::Recover(_)))
+}
+
+impl Modal {
+    /// What is asked next after this was closed without an answer.
+    fn back(self) -> Option<Modal> {
+        match self {
+            Modal::Path(_, what) => what.back(),
+            _ => None,
+        }
+    }
+}
+
+impl For {
+    /// What is asked next if no file was named: the form that asked for it, as it was filled in.
+    pub(super) fn back(self) -> Option<Modal> {
+        match self {
+            For::Export(form) => Some(Modal::Export(form)),
+            _ => None,
+        }
+    }
 }
 
 /// A row of buttons, each with its name, what it does, and what it means; what was pressed. Enter

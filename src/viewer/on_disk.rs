@@ -1,10 +1,11 @@
-//! Files that another program changed: taken at once where nothing is lost by it, else offered in a bar.
+//! Files that another program changed: taken at once where nothing is lost by it, else offered over
+//! the picture.
 
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use eframe::egui::{Context, Panel, Ui};
+use eframe::egui::{Area, Context, Frame, Id, Order, Ui, vec2};
 
 use super::app::App;
 use super::files::Done;
@@ -28,12 +29,15 @@ enum Theirs {
     Readable(Box<Document>),
     /// What is wrong with it, its first line.
     Bad(String),
+    /// It was moved or deleted.
+    Gone,
 }
 
-/// What was pressed in the bar.
+/// What was pressed.
 enum Choice {
     TakeScene,
     KeepScene,
+    SaveScene,
     TakeParts,
     KeepParts,
 }
@@ -71,19 +75,26 @@ impl Changes {
         self.scene = None;
     }
 
-    /// The bar, if there is something to decide.
-    fn ui(&self, ui: &mut Ui, title: &str) -> Option<Choice> {
+    /// What is to be decided, if anything is, at the upper edge of `ui`'s space: nothing moves for it
+    /// under a pointer that is about to press.
+    fn ui(&self, ui: &Ui, title: &str) -> Option<Choice> {
         if self.scene.is_none() && self.parts.is_none() {
             return None;
         }
         let mut choice = None;
-        Panel::top("on disk").show(ui, |ui| {
-            if let Some(theirs) = &self.scene {
-                choice = scene_ui(ui, title, theirs);
-            }
-            if let Some(parts) = &self.parts {
-                choice = parts_ui(ui, parts).or(choice.take());
-            }
+        let space = ui.max_rect().shrink(12.0);
+        let area = Area::new(Id::unique("on disk")).order(Order::Foreground);
+        area.fixed_pos(space.min).show(ui.ctx(), |ui| {
+            ui.set_max_width(space.width().min(640.0));
+            Frame::popup(ui.style()).show(ui, |ui| {
+                ui.spacing_mut().item_spacing = vec2(6.0, 4.0);
+                if let Some(theirs) = &self.scene {
+                    choice = scene_ui(ui, title, theirs);
+                }
+                if let Some(parts) = &self.parts {
+                    choice = parts_ui(ui, parts).or(choice.take());
+                }
+            });
         });
         choice
     }
@@ -105,8 +116,19 @@ fn scene_ui(ui: &mut Ui, title: &str, theirs: &Theirs) -> Option<Choice> {
                     format!("{title} was changed by another program and is not read: {what}");
                 ui.colored_label(ui.visuals().error_fg_color, text);
             }
+            Theirs::Gone => {
+                let text = format!("{title} was moved or deleted by another program.");
+                ui.colored_label(ui.visuals().error_fg_color, text);
+                let about = "Writes the file again";
+                if ui.button("Save it again").on_hover_text(about).clicked() {
+                    choice = Some(Choice::SaveScene);
+                }
+            }
         }
-        let about = "Goes on with what is here; saving asks before it replaces the file";
+        let about = match theirs {
+            Theirs::Gone => "Goes on with what is here, which is unsaved",
+            _ => "Goes on with what is here; saving asks before it replaces the file",
+        };
         if ui.button("Keep mine").on_hover_text(about).clicked() {
             choice = Some(Choice::KeepScene);
         }
@@ -140,10 +162,17 @@ fn names(parts: &Known) -> String {
 
 impl App {
     /// Shows what is to be decided about files on disk, and does what was chosen.
-    pub(super) fn on_disk_ui(&mut self, ui: &mut Ui) {
+    pub(super) fn on_disk_ui(&mut self, ui: &Ui) {
         // A question comes first.
         if self.files.is_modal() {
             return;
+        }
+        // What was edited here was taken back: nothing is lost any more.
+        if !self.document.is_unsaved()
+            && let Some(Theirs::Readable(theirs)) =
+                self.changes.scene.take_if(|theirs| matches!(theirs, Theirs::Readable(_)))
+        {
+            return self.load_theirs(*theirs);
         }
         let Some(choice) = self.changes.ui(ui, &self.document.title()) else { return };
         match choice {
@@ -153,6 +182,7 @@ impl App {
                 }
             }
             Choice::KeepScene => self.changes.scene = None,
+            Choice::SaveScene => self.save(ui.ctx(), None),
             Choice::TakeParts => {
                 if let Some(parts) = self.changes.parts.take() {
                     self.load_parts(&parts);
@@ -164,13 +194,20 @@ impl App {
 
     /// Takes what the watcher found.
     pub(super) fn changed_on_disk(&mut self, change: OnDisk) {
+        match &change {
+            OnDisk::Scene(path, _) | OnDisk::Gone(path)
+                if self.document.path() != Some(path.as_path()) =>
+            {
+                return;
+            }
+            OnDisk::Scene(..) => self.document.set_gone(false),
+            OnDisk::Gone(_) | OnDisk::Parts(_) | OnDisk::BadPart(_) => {}
+        }
         let is_edited = self.document.is_unsaved();
         match change {
-            OnDisk::Scene(path, _) | OnDisk::Gone(path)
-                if self.document.path() != Some(path.as_path()) => {}
             OnDisk::Scene(_, result) => match *result {
-                // What was just saved.
-                Ok(theirs) if self.document.is_of_same_text(&theirs) => {}
+                // What was just saved, or is back.
+                Ok(theirs) if self.document.is_of_same_text(&theirs) => self.changes.scene = None,
                 Ok(theirs) if is_edited => {
                     self.changes.scene = Some(Theirs::Readable(Box::new(theirs)));
                 }
@@ -180,10 +217,11 @@ impl App {
                     self.changes.scene = Some(Theirs::Bad(line));
                 }
             },
-            OnDisk::Gone(path) => self.notices.error(format!(
-                "{} was moved or deleted by another program; saving writes it again",
-                path.display()
-            )),
+            OnDisk::Gone(_) => {
+                self.document.set_gone(true);
+                self.changes.scene = Some(Theirs::Gone);
+                self.files.touched();
+            }
             OnDisk::Parts(parts) if is_edited => {
                 let waiting = self.changes.parts.get_or_insert_default();
                 waiting.meshes.extend(parts.meshes);

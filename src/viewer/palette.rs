@@ -1,7 +1,7 @@
 //! The palette: every command, found by some letters of its name.
 
 use eframe::egui::{
-    Button, Context, Key, Label, Modifiers, RichText, ScrollArea, TextEdit, Ui, vec2,
+    Button, Context, Event, Key, Label, Modifiers, RichText, ScrollArea, TextEdit, Ui, vec2,
 };
 
 use super::app::App;
@@ -20,6 +20,12 @@ const HEIGHT: f32 = 340.0;
 pub(super) struct Palette {
     text: String,
     at: usize,
+    /// Enter was pressed before it showed.
+    is_entered: bool,
+    /// It has shown: its field has the keyboard.
+    is_shown: bool,
+    /// Arrows went through the list.
+    is_led: bool,
 }
 
 /// A line of the palette.
@@ -60,6 +66,11 @@ impl Palette {
         ui.set_width(WIDTH);
         let pressed = |key| ui.ctx().input_mut(|input| input.consume_key(Modifiers::NONE, key));
         let [up, down, enter] = [Key::ArrowUp, Key::ArrowDown, Key::Enter].map(pressed);
+        if !std::mem::replace(&mut self.is_shown, true) {
+            self.text += &ui.ctx().input_mut(|input| typed(&mut input.events));
+        }
+        let enter = enter || std::mem::take(&mut self.is_entered);
+        self.is_led |= up || down;
         let field = TextEdit::singleline(&mut self.text).hint_text("Some letters of a command");
         let field = ui.add(field.desired_width(f32::INFINITY)).accessible_name("find a command");
         let field = field.on_hover_text("Arrows choose, Enter does it, Escape leaves");
@@ -87,7 +98,9 @@ impl Palette {
             ui.set_min_height(36.0);
             ui.add(Label::new(RichText::new(about).weak()).wrap());
         });
-        let entered = found.get(self.at).filter(|entry| enter && entry.refusal.is_none());
+        // Enter alone chooses nothing: what stands first was not asked for.
+        let is_chosen = enter && (self.is_led || !self.text.trim().is_empty());
+        let entered = found.get(self.at).filter(|entry| is_chosen && entry.refusal.is_none());
         clicked.or(entered.map(|entry| entry.command))
     }
 
@@ -116,7 +129,46 @@ impl Palette {
     }
 }
 
+/// Takes the typed text out of the events of a turn.
+fn typed(events: &mut Vec<Event>) -> String {
+    let mut text = String::new();
+    events.retain(|event| match event {
+        Event::Text(letters) => {
+            text += letters;
+            false
+        }
+        _ => true,
+    });
+    text
+}
+
 impl App {
+    /// Opens the palette if its keys were pressed, with all that was typed behind them in the same
+    /// turn: after a long turn that may be a whole command.
+    pub(super) fn open_palette(&mut self, ctx: &Context) {
+        let Some(keys) = Command::Palette.shortcut().filter(|_| self.takes_keys()) else { return };
+        let is_opening = |event: &Event| match event {
+            Event::Key { key, pressed: true, modifiers, .. } => {
+                *key == keys.logical_key && modifiers.matches_logically(keys.modifiers)
+            }
+            _ => false,
+        };
+        let opened = ctx.input_mut(|input| {
+            let at = input.events.iter().position(is_opening)?;
+            let mut later = input.events.split_off(at);
+            let text = typed(&mut later);
+            let mut is_entered = false;
+            later.retain(|event| {
+                let Event::Key { key, pressed, .. } = event else { return true };
+                is_entered |= *key == Key::Enter && *pressed;
+                false
+            });
+            input.events.append(&mut later);
+            Some(Palette { text, is_entered, ..Palette::default() })
+        });
+        self.palette = opened.or(self.palette.take());
+    }
+
     /// The palette, if it is open; the command that was chosen.
     pub(super) fn palette_ui(&mut self, ctx: &Context) -> Option<Command> {
         let mut palette = self.palette.take()?;

@@ -3,10 +3,33 @@
 use eframe::egui::{Context, Panel, Response, Ui};
 
 use super::app::App;
+use super::command::Command;
+use super::looks::STRIP;
 use crate::document::arrangement::{Arrangement, Part};
 
 /// Share of the height that is left which a panel below the picture may take.
 const MOST: f32 = 0.6;
+/// Least height of the welcome in points.
+pub(super) const WELCOME: f32 = 120.0;
+/// Least height of the picture in points.
+const PICTURE: f32 = 100.0;
+
+/// The panels below the picture, from the lowest up.
+const BELOW: [Part; 5] = [Part::Mixer, Part::Chart, Part::Mass, Part::Pixel, Part::Looks];
+
+/// Least size of a panel that can be resized, in points; of one that cannot, what it takes.
+fn least(part: Part) -> f32 {
+    match part {
+        Part::Outline => 120.0,
+        Part::Inspector => 380.0,
+        Part::Status => 0.0,
+        Part::Mixer => 60.0,
+        Part::Looks => STRIP,
+        Part::Chart => 120.0,
+        Part::Mass => 90.0,
+        Part::Pixel => 120.0,
+    }
+}
 
 /// What is remembered of the panels while the window is open.
 pub(super) struct Panels {
@@ -20,6 +43,8 @@ pub(super) struct Panels {
     given: Arrangement,
     /// Sizes in the latest turn in which each showed, in points.
     seen: [f32; Part::ALL.len()],
+    /// The panels below the picture that are open, those first that were opened first.
+    open: Vec<Part>,
     /// How often the layout was reset: panels of another round forget their sizes.
     round: u32,
 }
@@ -33,22 +58,23 @@ impl Panels {
             status: left.shows(Part::Status),
             given: left.clone(),
             seen: [0.0; Part::ALL.len()],
+            open: Vec::new(),
             round: 0,
         }
     }
 
     /// A panel in its place in `ui`. One below the picture takes no more than [`MOST`] of the height
-    /// that is left, so that the picture does not vanish.
+    /// that is left, and leaves what the picture and the panels above it need.
     pub(super) fn panel(&self, ui: &Ui, part: Part) -> Panel {
-        let (name, first, least) = match part {
-            Part::Outline => ("outline", 180.0, 120.0),
-            Part::Inspector => ("inspector", 440.0, 380.0),
-            Part::Status => ("status", 0.0, 0.0),
-            Part::Mixer => ("mixer", 130.0, 60.0),
-            Part::Looks => ("strip", 0.0, 0.0),
-            Part::Chart => ("chart", 300.0, 120.0),
-            Part::Mass => ("mass", 260.0, 120.0),
-            Part::Pixel => ("pixel", 270.0, 140.0),
+        let (name, first) = match part {
+            Part::Outline => ("outline", 180.0),
+            Part::Inspector => ("inspector", 440.0),
+            Part::Status => ("status", 0.0),
+            Part::Mixer => ("mixer", 130.0),
+            Part::Looks => ("strip", 0.0),
+            Part::Chart => ("chart", 300.0),
+            Part::Mass => ("mass", 260.0),
+            Part::Pixel => ("pixel", 270.0),
         };
         let id = (name, self.round);
         let panel = match part {
@@ -62,10 +88,13 @@ impl Panels {
         let size = self.given.size(part).map_or(first, |points| points as f32);
         let panel = panel.resizable(true).default_size(size);
         match part {
-            Part::Outline | Part::Inspector => panel.min_size(least),
+            Part::Outline | Part::Inspector => panel.min_size(least(part)),
             _ => {
-                let most = (ui.available_height() * MOST).max(least);
-                panel.size_range(least..=most)
+                let left = ui.available_height();
+                let above = BELOW.into_iter().skip_while(|other| *other != part).skip(1);
+                let above = above.filter(|other| self.open.contains(other)).map(least);
+                let most = (left * MOST).min(left - PICTURE - above.sum::<f32>());
+                panel.size_range(least(part)..=most.max(least(part)))
             }
         }
     }
@@ -96,6 +125,29 @@ impl App {
             Part::Chart => &mut self.chart.open,
             Part::Mass => &mut self.mass.open,
             Part::Pixel => &mut self.pixel.open,
+        }
+    }
+
+    /// Closes the panels below the picture that were opened first, as long as the others and the
+    /// picture do not fit into the height.
+    pub(super) fn make_room(&mut self, height: f32) {
+        for part in BELOW {
+            let is_open = *self.open_flag(part);
+            let known = self.panels.open.iter().position(|open| *open == part);
+            match (is_open, known) {
+                (true, None) => self.panels.open.push(part),
+                (false, Some(at)) => drop(self.panels.open.remove(at)),
+                _ => {}
+            }
+        }
+        let others = PICTURE + if self.welcome.is_open() { WELCOME } else { 0.0 };
+        let need = |open: &[Part]| open.iter().copied().map(least).sum::<f32>() + others;
+        while self.panels.open.len() > 1 && need(&self.panels.open) > height {
+            let part = self.panels.open.remove(0);
+            *self.open_flag(part) = false;
+            let command = Command::ALL.into_iter().find(|command| command.part() == Some(part));
+            let name = command.map_or("", Command::name);
+            self.notices.say(format!("“{name}” made room: the window is not high enough for all"));
         }
     }
 

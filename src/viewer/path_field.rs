@@ -127,7 +127,7 @@ impl PathField {
         let writes = self.question.purpose.writes();
         let folder = self.folder.clone().unwrap_or_default();
         let mut chosen = None;
-        scroll_up_to(220.0).auto_shrink([false, true]).show(ui, |ui| {
+        scroll_up_to(220.0).hscroll(false).auto_shrink([false, true]).show(ui, |ui| {
             if let Some(above) = folder.parent()
                 && ui.selectable_label(false, "../").on_hover_text("The folder above").clicked()
             {

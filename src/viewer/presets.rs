@@ -121,6 +121,9 @@ impl App {
 
     /// Gives the values that were pasted to the material that they were asked for, as one step.
     pub(super) fn receive_material(&mut self, ctx: &Context) {
+        if clipboard::is_empty(ctx) {
+            self.notices.say("nothing was pasted: the clipboard holds no text".into());
+        }
         let Some(text) = clipboard::pasted(ctx, clipboard_id(), false) else { return };
         let Some(name) = self.presets.pasted.take() else { return };
         let file = self.document.path().unwrap_or(Path::new("pasted.toml")).to_owned();

@@ -10,6 +10,7 @@ use eframe::egui::{
 
 use super::app::App;
 use super::command::Command;
+use super::panels::WELCOME;
 use super::thumbs::{texture, thumb_of};
 use crate::document::TEMPLATES;
 use crate::document::examples::EXAMPLES;
@@ -161,8 +162,8 @@ impl App {
         }
         self.welcome.load(&ctx);
         let mut closed = false;
-        let height = (0.4 * ui.available_height()).clamp(120.0, 276.0);
-        let panel = Panel::bottom("welcome").resizable(true).default_size(height).min_size(120.0);
+        let height = (0.4 * ui.available_height()).clamp(WELCOME, 276.0);
+        let panel = Panel::bottom("welcome").resizable(true).default_size(height).min_size(WELCOME);
         panel.show(ui, |ui| {
             closed = self.welcome_head_ui(ui, commands);
             commands.extend(self.welcome.cards_ui(ui));
