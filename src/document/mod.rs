@@ -42,6 +42,8 @@ pub struct Document {
     name: String,
     /// Absolute.
     path: Option<PathBuf>,
+    /// Where it came from, as long as there is no file: the folder of a picture. Absolute.
+    home: Option<PathBuf>,
     base: Base,
     /// The scene as opened or saved last.
     saved: Arc<Scene>,
@@ -205,6 +207,11 @@ impl Document {
     /// Its file, if it has one; absolute.
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
+    }
+
+    /// The folder of its file, or where it came from: where a dialog begins.
+    pub fn home(&self) -> Option<&Path> {
+        self.path.as_deref().and_then(Path::parent).or(self.home.as_deref())
     }
 
     /// For the title bar: the file's name or the template's.

@@ -25,6 +25,7 @@ impl Document {
         Document {
             name: name.to_owned(),
             path: None,
+            home: None,
             saved: Arc::clone(&base.scene),
             base,
             disk: None,
@@ -85,7 +86,8 @@ impl Document {
             .map_err(|error| with_missing(error.to_string(), &text, folder, &found))?;
         let mut edited = replaced(&scene, &found, folder);
         named_absolutely(&mut edited, folder);
-        let mut document = Document::of(&file_name(path), &text, scene);
+        let mut document = Document::of(&file_name(&path.with_extension("")), &text, scene);
+        document.home = Some(folder.to_owned());
         document.history = History::new(edited);
         document.refresh();
         Ok(document)

@@ -129,10 +129,12 @@ impl Settings {
         }
         text.push_str(&self.arrangement.text());
         if let Some(folder) = file.parent() {
-            std::fs::create_dir_all(folder)
-                .map_err(|error| format!("cannot make {}: {error}", folder.display()))?;
+            std::fs::create_dir_all(folder).map_err(|error| {
+                format!("settings are not kept: cannot make {}: {error}", folder.display())
+            })?;
         }
-        durably(file, None, text.as_bytes()).map_err(|error| error.to_string())
+        durably(file, None, text.as_bytes())
+            .map_err(|error| format!("settings are not kept: {error}"))
     }
 
     /// Puts a file at the head of the recent ones.

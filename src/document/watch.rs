@@ -25,6 +25,8 @@ pub enum OnDisk {
     Scene(PathBuf, Box<Result<Document, DocumentError>>),
     /// It moved the scene's file away.
     Gone(PathBuf),
+    /// The scene's file, which was gone or another one, holds again what it held.
+    Back(PathBuf),
     /// It wrote meshes and images: what they hold now, by their names in the scene.
     Parts(Known),
     /// It wrote a mesh or an image that cannot be read: why.
@@ -40,6 +42,8 @@ type Stamp = Option<(SystemTime, u64)>;
 pub struct Watch {
     watched: Watched,
     files: Vec<File>,
+    /// The scene's file was told to be gone or another one.
+    is_other: bool,
 }
 
 struct File {
@@ -96,6 +100,7 @@ impl Document {
         let Document {
             name: _,
             path: _,
+            home: _,
             base,
             saved,
             disk,
@@ -128,6 +133,7 @@ impl Watch {
     pub fn follow(&mut self, watched: Watched) {
         let Watched { scene, parts, known: _ } = &watched;
         let is_same_text = *scene == self.watched.scene;
+        self.is_other &= is_same_text;
         let mut before = std::mem::take(&mut self.files);
         let mut file = |path: &Path, is_known: bool, first: Option<Stamp>| {
             let at = before.iter().position(|file| is_known && file.path == path);
@@ -153,7 +159,11 @@ impl Watch {
                 continue;
             }
             match (i, is_saved) {
-                (0, true) => found.extend(self.watched.scene_changed()),
+                (0, true) => {
+                    let change = self.watched.scene_changed(self.is_other);
+                    self.is_other = matches!(change, Some(OnDisk::Scene(..) | OnDisk::Gone(_)));
+                    found.extend(change);
+                }
                 _ => {
                     let part = &self.watched.parts[i - usize::from(is_saved)];
                     found.extend(self.watched.known.read_again(part, &mut fresh));
@@ -171,11 +181,11 @@ impl Watch {
 }
 
 impl Watched {
-    /// What became of the scene's file, if it holds another text.
-    fn scene_changed(&self) -> Option<OnDisk> {
+    /// What became of the scene's file, if it holds another text, or did when somebody last looked.
+    fn scene_changed(&self, was_other: bool) -> Option<OnDisk> {
         let (path, text) = self.scene.as_ref()?;
         match std::fs::read(path) {
-            Ok(bytes) if bytes == text.as_bytes() => None,
+            Ok(bytes) if bytes == text.as_bytes() => was_other.then(|| OnDisk::Back(path.clone())),
             Ok(_) => Some(OnDisk::Scene(path.clone(), Box::new(Document::open(path)))),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 Some(OnDisk::Gone(path.clone()))

@@ -3,7 +3,9 @@
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-use eframe::egui::{CentralPanel, Context, Frame, Margin, Panel, Ui, Vec2, ViewportCommand};
+use eframe::egui::{
+    CentralPanel, Context, Frame, Margin, Panel, Ui, Vec2, ViewportCommand, Visuals,
+};
 
 use super::Setup;
 use super::carried::Outlined;
@@ -129,7 +131,7 @@ impl App {
                 (Some(recovery), found)
             }
             Err(error) => {
-                notices.error(format!("unsaved work cannot be kept: {}", error.message));
+                notices.error(error.message);
                 (None, Vec::new())
             }
         };
@@ -531,6 +533,11 @@ impl App {
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         App::ui(self, ui);
+    }
+
+    /// What shows in the hair between panels whose edges lie between two pixels.
+    fn clear_color(&self, visuals: &Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
     }
 
     fn on_exit(&mut self, _: Option<&eframe::glow::Context>) {

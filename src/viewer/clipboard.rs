@@ -5,7 +5,7 @@ use std::time::Duration;
 use eframe::egui::{Context, Event, Id, ViewportCommand};
 
 /// How long the clipboard may take to answer.
-const PATIENCE: Duration = Duration::from_secs(1);
+const PATIENCE: Duration = Duration::from_secs(2);
 
 /// A control that waits for the clipboard.
 #[derive(Clone, Copy, Debug)]

@@ -30,7 +30,7 @@ impl App {
         !self.files.is_modal() && self.palette.is_none() && !self.shows_keys
     }
 
-    /// The commands whose keys were pressed.
+    /// The commands whose keys were pressed, each as often as they were: a long turn brings many.
     pub(super) fn shortcuts(&self, ctx: &Context) -> Vec<Command> {
         if !self.takes_keys() {
             return Vec::new();
@@ -43,12 +43,17 @@ impl App {
         let own = |command| typing && matches!(command, Command::Undo | Command::Redo);
         // Escape closes the welcome, too, before it stops anything.
         let closes = |command| command == Command::Stop && self.welcome.is_open();
-        let pressed = Command::with_shortcuts().into_iter().filter(|(command, keys)| {
+        let pressed = Command::with_shortcuts().into_iter().flat_map(|(command, keys)| {
             let plain = (focused || open) && keys.modifiers.is_none();
-            let taken = plain || own(*command) || closes(*command);
-            !taken && ctx.input_mut(|input| input.consume_shortcut(keys))
+            let count = match plain || own(command) || closes(command) {
+                true => 0,
+                false => {
+                    ctx.input_mut(|i| i.count_and_consume_key(keys.modifiers, keys.logical_key))
+                }
+            };
+            std::iter::repeat_n(command, count)
         });
-        pressed.map(|(command, _)| command).collect()
+        pressed.collect()
     }
 
     /// A gesture ends when no button is down, and wheel and keys rest.

@@ -345,7 +345,7 @@ impl App {
 
     /// Asks for a file by the system's dialog.
     pub(super) fn ask(&mut self, ctx: &Context, purpose: Purpose, name: String, what: For) {
-        let folder = self.document.path().and_then(Path::parent).map(Path::to_owned);
+        let folder = self.document.home().map(Path::to_owned);
         let folder = folder.filter(|f| !f.as_os_str().is_empty());
         let folder = folder.or_else(|| std::env::current_dir().ok()).unwrap_or_default();
         self.ask_question(ctx, Question { purpose, folder, name }, what);

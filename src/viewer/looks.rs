@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{
-    Align2, Color32, FontId, Key, Rect, Response, Role, ScrollArea, Sense, Stroke, StrokeKind,
-    TextEdit, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Align2, Color32, FontId, Key, Painter, Pos2, Rect, Response, Role, ScrollArea, Sense, Stroke,
+    StrokeKind, TextEdit, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
 use super::app::App;
@@ -315,7 +316,6 @@ impl Face<'_> {
             let stroke = Stroke::new(2.0, ui.visuals().selection.bg_fill);
             painter.rect_stroke(space, 0.0, stroke, StrokeKind::Inside);
         }
-        let font = FontId::proportional(12.0);
         let middle = space.bottom() + line / 2.0 + 1.0;
         let mut right = space.right();
         if let Some((text, color)) = self.badge {
@@ -332,18 +332,19 @@ impl Face<'_> {
             let label = format!("cost of {}: {text}", self.label);
             cost.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
         }
-        let left =
-            Rect::from_min_max(pos2(space.left(), space.bottom()), pos2(right, rect.bottom()));
-        let painter = painter.with_clip_rect(left);
-        painter.text(
-            pos2(space.left(), middle),
-            Align2::LEFT_CENTER,
-            self.below,
-            font,
-            visuals.text_color(),
-        );
+        let room = right - space.left();
+        caption(&painter, self.below, pos2(space.left(), middle), room, visuals.text_color());
         response
     }
+}
+
+/// Writes what a card is called from `left` on, in no more than `room`: the rest is an ellipsis.
+pub(super) fn caption(painter: &Painter, text: &str, left: Pos2, room: f32, color: Color32) {
+    let mut job = LayoutJob::simple_singleline(text.to_owned(), FontId::proportional(12.0), color);
+    job.wrap = TextWrapping::truncate_at_width(room);
+    let galley = painter.layout_job(job);
+    let corner = left - vec2(0.0, galley.size().y / 2.0);
+    painter.galley(corner, galley, color);
 }
 
 impl Renaming {

@@ -195,19 +195,19 @@ impl App {
     /// Takes what the watcher found.
     pub(super) fn changed_on_disk(&mut self, change: OnDisk) {
         match &change {
-            OnDisk::Scene(path, _) | OnDisk::Gone(path)
+            OnDisk::Scene(path, _) | OnDisk::Gone(path) | OnDisk::Back(path)
                 if self.document.path() != Some(path.as_path()) =>
             {
                 return;
             }
-            OnDisk::Scene(..) => self.document.set_gone(false),
+            OnDisk::Scene(..) | OnDisk::Back(_) => self.document.set_gone(false),
             OnDisk::Gone(_) | OnDisk::Parts(_) | OnDisk::BadPart(_) => {}
         }
         let is_edited = self.document.is_unsaved();
         match change {
             OnDisk::Scene(_, result) => match *result {
-                // What was just saved, or is back.
-                Ok(theirs) if self.document.is_of_same_text(&theirs) => self.changes.scene = None,
+                // What was just saved.
+                Ok(theirs) if self.document.is_of_same_text(&theirs) => {}
                 Ok(theirs) if is_edited => {
                     self.changes.scene = Some(Theirs::Readable(Box::new(theirs)));
                 }
@@ -217,6 +217,7 @@ impl App {
                     self.changes.scene = Some(Theirs::Bad(line));
                 }
             },
+            OnDisk::Back(_) => self.changes.scene = None,
             OnDisk::Gone(_) => {
                 self.document.set_gone(true);
                 self.changes.scene = Some(Theirs::Gone);

@@ -47,6 +47,9 @@ pub(super) struct Panels {
     open: Vec<Part>,
     /// How often the layout was reset: panels of another round forget their sizes.
     round: u32,
+    /// How often panels below the picture came or went: the others then have their own heights again,
+    /// as far as there is room.
+    shift: u32,
 }
 
 impl Panels {
@@ -60,6 +63,7 @@ impl Panels {
             seen: [0.0; Part::ALL.len()],
             open: Vec::new(),
             round: 0,
+            shift: 0,
         }
     }
 
@@ -76,7 +80,8 @@ impl Panels {
             Part::Mass => ("mass", 260.0),
             Part::Pixel => ("pixel", 270.0),
         };
-        let id = (name, self.round);
+        let shift = if BELOW.contains(&part) { self.shift } else { 0 };
+        let id = (name, self.round, shift);
         let panel = match part {
             Part::Outline => Panel::left(id),
             Part::Inspector => Panel::right(id),
@@ -131,6 +136,7 @@ impl App {
     /// Closes the panels below the picture that were opened first, as long as the others and the
     /// picture do not fit into the height.
     pub(super) fn make_room(&mut self, height: f32) {
+        let before = self.panels.open.clone();
         for part in BELOW {
             let is_open = *self.open_flag(part);
             let known = self.panels.open.iter().position(|open| *open == part);
@@ -148,6 +154,11 @@ impl App {
             let command = Command::ALL.into_iter().find(|command| command.part() == Some(part));
             let name = command.map_or("", Command::name);
             self.notices.say(format!("“{name}” made room: the window is not high enough for all"));
+        }
+        if self.panels.open != before {
+            self.panels.shift += 1;
+            // What moves by itself was not dragged.
+            BELOW.into_iter().for_each(|part| self.panels.seen[part as usize] = 0.0);
         }
     }
 

@@ -4,12 +4,13 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use eframe::egui::{
-    Align, Color32, Context, FontId, Key, Layout, Modifiers, Panel, Popup, Rect, Response, Role,
+    Align, Color32, Context, Key, Layout, Modifiers, Panel, Popup, Rect, Response, Role,
     ScrollArea, Sense, StrokeKind, TextStyle, TextureHandle, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
 use super::app::App;
 use super::command::Command;
+use super::looks::caption;
 use super::panels::WELCOME;
 use super::thumbs::{texture, thumb_of};
 use crate::document::TEMPLATES;
@@ -112,14 +113,8 @@ impl Card<'_> {
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             painter.image(thumb.id(), place, whole, Color32::WHITE);
         }
-        let galley = painter.layout_no_wrap(
-            self.label.to_owned(),
-            FontId::proportional(12.0),
-            visuals.text_color(),
-        );
-        let below = Rect::from_min_max(space.left_bottom(), rect.max - Vec2::splat(2.0));
-        let painter = ui.painter_at(below);
-        painter.galley(space.left_bottom() + vec2(0.0, 2.0), galley, visuals.text_color());
+        let left = space.left_bottom() + vec2(0.0, line / 2.0 + 1.0);
+        caption(&painter, self.label, left, space.width(), visuals.text_color());
         response.on_hover_text(self.about)
     }
 }

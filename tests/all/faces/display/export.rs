@@ -17,8 +17,9 @@ fn a_picture_is_exported_through_the_path_field() {
     let button = twin.rect(Role::Button, "Choose file…");
     desk.press("ctrl+e");
     desk.until_part_like(&mut twin, button, "the export's question shows");
-    desk.click(button.center());
-    twin.click(button.center());
+    // The button has the keyboard, although a slider had it before.
+    desk.press("Return");
+    twin.press(Key::Enter);
     let field = twin.rect(Role::TextInput, "file path");
     let heading = twin.place("Export the picture");
     desk.until_part_like(&mut twin, heading, "the path field shows");

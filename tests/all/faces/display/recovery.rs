@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
+use eframe::egui::Key;
 use eframe::egui::accesskit::Role;
 use serde_json::Value;
 
@@ -32,8 +33,9 @@ fn recover(desk: &mut Desk) -> Twin {
     desk.start();
     let offer = twin.place("Unsaved work was found").union(button);
     desk.until_part_like(&mut twin, offer, "the work is offered");
-    twin.click(button.center());
-    desk.click(button.center());
+    // The button has the keyboard.
+    twin.press(Key::Enter);
+    desk.press("Return");
     twin.until_exact();
     desk.show_one_to_one(&mut twin);
     twin

@@ -60,3 +60,34 @@ fn shortcuts_are_letters_while_a_text_is_typed() {
     window.key(Modifiers::COMMAND, Key::Z);
     assert!(*window.app().document().scene() != edited);
 }
+
+/// A long turn brings several presses of a key at once.
+#[test]
+fn every_press_of_a_key_counts() {
+    let mut window = Window::with_scene(SCENE, Vec::new());
+    let press = |window: &mut Window, key: Key, modifiers: Modifiers, count: usize| {
+        for pressed in [true, false].repeat(count) {
+            let physical_key = None;
+            window.harness.event(Event::Key {
+                key,
+                physical_key,
+                pressed,
+                repeat: false,
+                modifiers,
+            });
+        }
+        window.harness.step();
+    };
+    press(&mut window, Key::CloseBracket, Modifiers::NONE, 6);
+    assert_eq!(window.app().document().scene().picture.exposure, 2.0);
+    window.until("the gesture ends", |app| app.document().undo_name().is_some());
+    std::thread::sleep(Duration::from_millis(500));
+    window.harness.run_steps(2);
+    window.click("mirror");
+    for value in ["0.1", "0.2", "0.4"] {
+        window.type_into("diffuse value", value);
+    }
+    press(&mut window, Key::Z, Modifiers::COMMAND, 3);
+    let diffuse = window.app().document().scene().materials[1].diffuse;
+    assert_eq!(diffuse.0[0], 0.3, "three steps back");
+}

@@ -107,3 +107,41 @@ fn colours_and_size_of_text_are_commands() {
     assert_eq!(window.harness.ctx.zoom_factor(), 1.25);
     assert!(window.settings_text().contains("zoom_percent = 125"));
 }
+
+/// What shows while each panel below the picture does, and the palette's name of it.
+const BELOW: [(&str, &str); 5] = [
+    ("Light mixer", "Close the light mixer"),
+    ("Speed and accuracy", "Close speed and accuracy"),
+    ("Mass properties", "Close mass"),
+    ("Pixel and its rays", "Close pixel"),
+    ("Looks", "no look"),
+];
+
+#[test]
+fn every_panel_fits_below_the_picture_or_the_oldest_makes_room() {
+    for (height, least) in [(720.0, 5), (560.0, 3)] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, SCENE).unwrap();
+        let mut window =
+            Window::of_size(vec2(1280.0, height), folder, Some(path.clone()), Vec::new());
+        window.until("the scene is open", |app| app.document().path() == Some(&path));
+        for (name, _) in BELOW {
+            window.menu(&["View", name]);
+            window.harness.run_steps(3);
+        }
+        let open: Vec<usize> =
+            (0..BELOW.len()).filter(|i| window.button(BELOW[*i].1).is_some()).collect();
+        assert!(open.len() >= least, "{open:?} at {height}");
+        assert_eq!(open.last(), Some(&4), "the latest is open");
+        assert_eq!(open.len() < 5, window.shows("made room"), "{open:?} at {height}");
+        let mut last = window.view();
+        assert!(last.height() >= 99.0, "{last} at {height}");
+        for i in open.iter().rev() {
+            let mark = window.rect(Role::Button, BELOW[*i].1);
+            assert!(mark.top() >= last.bottom() - 1.0, "{} at {mark} below {last}", BELOW[*i].0);
+            assert!(mark.bottom() < height - 20.0, "{mark}");
+            last = mark;
+        }
+    }
+}

@@ -134,8 +134,12 @@ fn a_region_is_drawn_by_a_drag_and_goes_with_a_double_click() {
     window.key(Modifiers::NONE, Key::F);
     assert!(window.outline().is_some());
     let middle = window.at(20.0, 12.0);
+    window.click("fill");
     window.double_click_at(middle);
     assert_eq!(window.outline(), None);
+    assert!(window.shows("Light fill"), "two clicks that took the region away choose nothing");
+    window.click_at(middle, Modifiers::NONE);
+    assert!(!window.shows("Light fill"), "one does");
 
     window.key(Modifiers::NONE, Key::R);
     window.key(Modifiers::NONE, Key::Escape);

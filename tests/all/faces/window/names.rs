@@ -353,6 +353,7 @@ fn every_button_of_the_questions_has_a_name_and_a_tooltip() {
     window.until_button("config/");
     window.walk(&before, 4);
     window.click("Cancel");
+    window.key(Modifiers::NONE, Key::Escape);
 
     window.click("mirror");
     window.drag_slider("diffuse", 0.9);

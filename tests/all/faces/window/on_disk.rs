@@ -126,3 +126,40 @@ fn a_mesh_is_read_anew_and_edits_stay() {
     window.until_exact();
     assert!(rgb(&window.picture()) == rendered(window.folder.path(), "scene.toml"));
 }
+
+#[test]
+fn an_offer_moves_nothing_and_what_is_undone_here_is_loaded() {
+    let mut window = Window::with_scene(SCENE, Vec::new());
+    window.click("mirror");
+    window.type_into("diffuse value", "0.75");
+    let before = window.rect(Role::Slider, "diffuse");
+    std::fs::write(window.file("scene.toml"), theirs()).unwrap();
+    window.until_button("Load theirs");
+    window.harness.run_steps(3);
+    assert_eq!(window.rect(Role::Slider, "diffuse"), before);
+    window.key(Modifiers::COMMAND, Key::Z);
+    window.until("their edit is here", |app| reflect(app) == 0.25);
+    assert!(window.button("Load theirs").is_none());
+}
+
+#[test]
+fn a_scene_whose_file_is_gone_is_unsaved_until_it_is_back_or_saved() {
+    let mut window = Window::with_scene(SCENE, Vec::new());
+    let file = window.file("scene.toml");
+    std::fs::remove_file(&file).unwrap();
+    window.until_button("Save it again");
+    assert!(window.app().document().is_unsaved());
+    window.menu(&["File", "New", "Empty stage"]);
+    window.until_text("Save the changes to scene.toml?");
+    window.click("Cancel");
+    std::fs::write(&file, SCENE).unwrap();
+    window.until("it is back", |app| !app.document().is_unsaved());
+    window.harness.run_steps(2);
+    assert!(window.button("Save it again").is_none());
+    std::fs::remove_file(&file).unwrap();
+    window.until_button("Save it again");
+    window.click("Save it again");
+    window.until("it is saved", |app| !app.document().is_unsaved());
+    window.harness.run_steps(2);
+    assert!(window.button("Save it again").is_none() && window.scene_text() == SCENE);
+}

@@ -88,3 +88,44 @@ fn a_question_mark_lists_keys_and_gestures() {
     window.key(Modifiers::NONE, Key::Escape);
     assert!(!window.shows("Alt-click"));
 }
+
+/// A long turn brings all keys at once.
+#[test]
+fn what_is_typed_before_the_palette_shows_is_not_lost() {
+    let mut window = Window::with_scene(SCENE, Vec::new());
+    let scene = window.app().document().scene().clone();
+    let key = |key, modifiers, pressed| Event::Key {
+        key,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers,
+    };
+    let mut events = vec![key(Key::K, Modifiers::COMMAND, true)];
+    for (letter, k) in "speed".chars().zip([Key::S, Key::P, Key::E, Key::E, Key::D]) {
+        events.push(key(k, Modifiers::NONE, true));
+        events.push(Event::Text(letter.to_string()));
+        events.push(key(k, Modifiers::NONE, false));
+    }
+    events.push(key(Key::Enter, Modifiers::NONE, true));
+    window.harness.input_mut().events.append(&mut events);
+    window.harness.run_steps(4);
+    assert!(!window.palette_is_open() && window.shows("Measure"), "the chart is open");
+    assert!(*window.app().document().scene() == scene && !window.shows("snapshot 1"));
+    window.find("");
+    window.write("zoom");
+    window.key(Modifiers::NONE, Key::Enter);
+    assert!(!window.palette_is_open(), "typed one turn later");
+}
+
+#[test]
+fn enter_alone_chooses_nothing() {
+    let mut window = Window::with_scene(SCENE, Vec::new());
+    window.find("");
+    window.key(Modifiers::NONE, Key::Enter);
+    assert!(window.palette_is_open());
+    assert_eq!(window.app().document().title(), "scene.toml");
+    window.key(Modifiers::NONE, Key::ArrowDown);
+    window.key(Modifiers::NONE, Key::Enter);
+    assert!(!window.palette_is_open(), "arrows choose");
+}

@@ -36,6 +36,24 @@ fn a_path_is_typed_and_an_existing_file_is_asked_for_twice() {
 }
 
 #[test]
+fn leaving_the_path_goes_back_to_the_form_as_it_was() {
+    let mut window = alone();
+    for key in [None, Some(Key::Escape)] {
+        window.key(Modifiers::COMMAND, Key::E);
+        window.click("OpenEXR");
+        window.click("Choose file…");
+        window.until_text("The system offers no file dialog here");
+        match key {
+            Some(key) => window.key(Modifiers::NONE, key),
+            None => window.click("Cancel"),
+        }
+        window.until_text("without exposure and tone");
+        window.key(Modifiers::NONE, Key::Escape);
+        assert!(!window.shows("Export the picture"));
+    }
+}
+
+#[test]
 fn a_path_is_typed_or_chosen_to_open() {
     let mut window = alone();
     let other = window.file("folder/other.toml");

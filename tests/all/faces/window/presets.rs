@@ -115,6 +115,9 @@ fn a_material_is_copied_and_pasted_as_text() {
     paste(&mut window, "no material at all");
     window.until_text("`no material at all` was not pasted: it is no material");
     assert!(*window.scene() == before);
+    window.right_click("tiles");
+    window.click("Paste material tiles");
+    window.until_text("the clipboard holds no text");
     paste(&mut window, &copied);
     let expected = Material { name: "tiles".into(), ..before.materials[1].clone() };
     assert_eq!(window.scene().materials[0], expected);
