@@ -138,7 +138,6 @@ fn an_example_that_is_opened_again_casts_no_ray() {
     let mut window = fresh();
     window.open_example("Three matte solids");
     let first = window.picture();
-    window.until_kept("plain");
     for other in ["Machined part", "Whitted's spheres"] {
         window.menu(&["Help", "Welcome"]);
         window.open_example(other);
