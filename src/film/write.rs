@@ -74,8 +74,8 @@ pub fn picture(
     let Plates { film, coverage, layers: _ } = plates;
     atomically(path, |out| match (format, coverage) {
         (Format::Png8, None) => png8(out, &develop::frame(film, development), scene),
-        (Format::Png8, Some(_)) => png8_alpha(out, plates, development, scene),
-        (Format::Png16, _) => png16(out, plates, development, scene),
+        (Format::Png8, Some(_)) => png_of(out, png::BitDepth::Eight, plates, development, scene),
+        (Format::Png16, _) => png_of(out, png::BitDepth::Sixteen, plates, development, scene),
         (Format::Exr, _) => exr_floats(out, plates, scene),
         (Format::Hdr, _) => hdr(out, film, scene),
     })
@@ -180,40 +180,30 @@ fn png8(out: &mut dyn WriteSeek, frame: &Frame, scene: &str) -> Result<(), Strin
     png_file(out, frame.size, (png::BitDepth::Eight, false), &rgb, scene)
 }
 
-/// Colours are not multiplied by alpha: PNG says so.
-fn png8_alpha(
+/// Of samples of `depth`, with alpha if it is known. Colours are not multiplied by it: PNG says so.
+fn png_of(
     out: &mut dyn WriteSeek,
+    depth: png::BitDepth,
     plates: &Plates,
     development: Development,
     scene: &str,
 ) -> Result<(), String> {
     let size = plates.film.layout.size;
-    let mut data = Vec::with_capacity(size[0] as usize * size[1] as usize * 4);
-    for pixel in pixels(size) {
-        let (light, alpha) = uncovered(plates, pixel);
-        data.extend(code8(light, development));
-        data.push((alpha * 255.0).round() as u8);
-    }
-    png_file(out, size, (png::BitDepth::Eight, true), &data, scene)
-}
-
-fn png16(
-    out: &mut dyn WriteSeek,
-    plates: &Plates,
-    development: Development,
-    scene: &str,
-) -> Result<(), String> {
-    let size = plates.film.layout.size;
-    let mut data = Vec::with_capacity(size[0] as usize * size[1] as usize * 8);
     let has_alpha = plates.coverage.is_some();
+    let mut data = Vec::with_capacity(size[0] as usize * size[1] as usize * 8);
     for pixel in pixels(size) {
         let (light, alpha) = uncovered(plates, pixel);
-        data.extend(code16(light, development).into_iter().flat_map(u16::to_be_bytes));
-        if has_alpha {
-            data.extend(((alpha * 65_535.0).round() as u16).to_be_bytes());
+        let alpha = has_alpha.then_some(alpha);
+        if depth == png::BitDepth::Eight {
+            data.extend(code8(light, development));
+            data.extend(alpha.map(|alpha| (alpha * 255.0).round() as u8));
+        } else {
+            let alpha = alpha.map(|alpha| (alpha * 65_535.0).round() as u16);
+            let samples = code16(light, development).into_iter().chain(alpha);
+            data.extend(samples.flat_map(u16::to_be_bytes));
         }
     }
-    png_file(out, size, (png::BitDepth::Sixteen, has_alpha), &data, scene)
+    png_file(out, size, (depth, has_alpha), &data, scene)
 }
 
 /// The pixels of a picture, row by row.

@@ -66,6 +66,12 @@ pub struct Forest {
 }
 
 impl Forest {
+    /// That of a scene, without a place for any tile.
+    pub fn of(scene: &Scene) -> Forest {
+        let layout = Layout::new(scene.picture.size);
+        Forest { layout, samples: scene.trace.samples, tiles: Vec::new() }
+    }
+
     /// Allocated bytes of all trees.
     pub fn bytes(&self) -> usize {
         self.tiles.iter().flatten().map(|trees| trees.bytes()).sum()

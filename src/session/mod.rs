@@ -17,6 +17,8 @@ pub mod plan;
 mod redecide;
 pub mod regrow;
 pub mod still;
+#[cfg(test)]
+mod tests_ahead;
 pub mod trace;
 
 use std::sync::{Arc, Mutex};
@@ -27,7 +29,6 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::film::Frame;
 use crate::film::layout::TILE_BLOCKS;
-use crate::film::plates::Region;
 use crate::fold::Names;
 use crate::fold::highlight::HighlightPower;
 use crate::fold::transport::Transport;
@@ -48,7 +49,7 @@ pub use class::{Class, EditReport, Work};
 pub use options::Options;
 use plan::Plan;
 use regrow::{Patch, Regrow};
-use trace::{Keep, Kept, TraceError, TraceReport, trace};
+use trace::{Ahead, Keep, Kept, TraceError, TraceReport, Traced, trace};
 
 /// A scene, its kept trees, and its picture, always in step: after every successful call the frame
 /// is what a fresh trace of [`Session::scene`] gives, bit for bit. A session that a graphics card shows
@@ -123,16 +124,28 @@ impl Session {
         Session::begin_with(start, None, progress)
     }
 
-    /// The same of a part of the picture, if one is named: all else is black and knows of no edit.
+    /// The same, a part of the picture before the rest, if one is named. The session that is shown of it
+    /// has no trees; all but the part is black there, and knows of no edit.
     pub(super) fn begin_with(
         start: Start,
-        part: Option<Region>,
+        ahead: Option<Ahead<Session>>,
         progress: &Progress,
     ) -> Result<Session, TraceError> {
         let Start { scene, geometry, pool, options, kept, reuse } = start;
         let keep = Keep { what: kept, bytes: options.memory };
-        let wanted = (&*scene, part);
-        let traced = trace(wanted, &geometry, &pool, keep, reuse, progress)?;
+        let of = |traced| Session::of_traced((&scene, &geometry), (&pool, options), traced);
+        let show = |traced| ahead.as_ref().map_or(Ok(()), |ahead| (ahead.show)(of(traced)));
+        let first = ahead.as_ref().map(|ahead| Ahead { region: ahead.region, show: &show });
+        let traced = trace((&scene, first), &geometry, &pool, keep, reuse, progress)?;
+        Ok(of(traced))
+    }
+
+    /// Draws what was traced.
+    fn of_traced(
+        (scene, geometry): (&Arc<Scene>, &Arc<Geometry>),
+        (pool, options): (&Arc<ThreadPool>, Options),
+        traced: Traced,
+    ) -> Session {
         let mut session = Session {
             canvas: Canvas::new(scene.picture.size),
             keys: (0..).take(scene.lights.len()).collect(),
@@ -140,10 +153,10 @@ impl Session {
             names: Names::new(geometry.materials(), scene.lights.len()),
             iors: scene.materials.iter().map(|m| m.ior).collect(),
             lobes: scene.materials.iter().map(Material::lobes).collect(),
-            scene,
+            scene: scene.clone(),
             options,
-            pool,
-            geometry,
+            pool: pool.clone(),
+            geometry: geometry.clone(),
             forest: traced.forest,
             map: traced.map,
             program: TermProgram::new(&traced.transport.trie),
@@ -155,7 +168,7 @@ impl Session {
         };
         session.evaluate_terms();
         session.draw(Tiles::All);
-        Ok(session)
+        session
     }
 
     /// Makes `scene` the session's, with the least work. On an error the session keeps its old

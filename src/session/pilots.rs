@@ -66,6 +66,18 @@ impl Pilots {
     /// Traces the first samples of some tiles and of the pixels around them, and decides. At most half of
     /// `bytes` holds their trees. Without a pool it works on the thread that calls.
     pub(super) fn trace(
+        wanted: (&Scene, &PixelSet),
+        geometry: &Geometry,
+        pool: Option<&ThreadPool>,
+        bytes: u64,
+        progress: &Progress,
+    ) -> Result<Pilots, TraceError> {
+        Pilots::default().more(wanted, geometry, pool, bytes, progress)
+    }
+
+    /// The same of other tiles of the same scene. What is decided stays, and rays that were cast answer.
+    pub(super) fn more(
+        &self,
         (scene, wanted): (&Scene, &PixelSet),
         geometry: &Geometry,
         pool: Option<&ThreadPool>,
@@ -76,16 +88,18 @@ impl Pilots {
             return Ok(Pilots::default());
         }
         let keys: Vec<u16> = (0..).take(scene.lights.len()).collect();
+        let held: usize = self.trees.iter().flatten().map(|trees| trees.bytes()).sum();
         let survey = Survey {
             scene,
             geometry,
-            old: &[],
+            old: &self.trees,
             keys: &keys,
             before: &Before::of(scene, geometry),
             bent: &[],
-            bytes: usize::try_from(bytes / 2).unwrap_or(usize::MAX),
+            bytes: usize::try_from(bytes / 2).unwrap_or(usize::MAX).saturating_sub(held),
         };
-        let map = SampleMap::unknown(Layout::new(scene.picture.size), scene.trace.samples);
+        let unknown = || SampleMap::unknown(Layout::new(scene.picture.size), scene.trace.samples);
+        let map = self.map.as_deref().map_or_else(unknown, SampleMap::clone);
         survey.decide(wanted, map, pool, progress)
     }
 

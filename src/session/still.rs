@@ -6,7 +6,6 @@ use super::trace::{Keep, Kept, TraceError, TraceReport, trace_tiles};
 use crate::film::layout::{Layout, TILE_BLOCKS};
 use crate::film::{Film, FilmBlock};
 use crate::fold::Names;
-use crate::forest::Forest;
 use crate::geometry::Geometry;
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -42,7 +41,7 @@ impl Still<'_> {
         let Still { scene, geometry, pool, memory } = *self;
         let keep = Keep { what: Kept::Matrix, bytes: memory };
         let wanted = (scene, tiles.to_vec());
-        let traced = trace_tiles(wanted, geometry, pool, keep, Forest::default(), progress)?;
+        let traced = trace_tiles(wanted, geometry, pool, keep, progress)?;
         let names = Names::new(geometry.materials(), scene.lights.len());
         let factors = FactorValues::new(scene).with_lights_at(&names.lights);
         let mut terms = TermValues::default();

@@ -1,12 +1,13 @@
 //! Traces and folds a whole picture, tile by tile on all threads, within a budget of memory.
 
 use std::fmt;
-use std::ops::AddAssign;
+use std::ops::{AddAssign, Range};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
+use rayon::prelude::*;
 
 use super::pilots::Pilots;
 use crate::film::layout::{Layout, TILE_BLOCKS};
@@ -191,26 +192,47 @@ pub fn trace_only(
     Ok(TraceReport { seconds: start.elapsed().as_secs_f64(), rays, ..TraceReport::default() })
 }
 
+/// A part of the picture that is traced before the rest, and shown.
+pub struct Ahead<'a, T> {
+    /// The part: all tiles that it touches. It must lie within the picture.
+    pub region: Region,
+    /// Gets the picture as it is then, without trees: all other tiles have no terms. On an error the
+    /// rest is not traced.
+    pub show: &'a dyn Fn(T) -> Result<(), Cancelled>,
+}
+
 /// Traces and folds `scene`. The memory of `reuse`, an earlier forest, is filled anew.
 ///
 /// Each tile is folded block by block while its trees are in cache. Beyond the budget trees are
-/// released first, then highlight lists; the picture does not depend on what is kept.
-///
-/// With a region, only the tiles that it touches are traced; all others stay without terms.
+/// released first, then highlight lists; the picture does not depend on what is kept, nor on the part
+/// that is traced before the rest.
 pub fn trace(
-    (scene, region): (&Scene, Option<Region>),
+    (scene, ahead): (&Scene, Option<Ahead<Traced>>),
     geometry: &Geometry,
     pool: &ThreadPool,
     keep: Keep,
     reuse: Forest,
     progress: &Progress,
 ) -> Result<Traced, TraceError> {
+    let start = Instant::now();
     let layout = Layout::new(scene.picture.size);
-    let all = || (0..layout.tiles()).collect();
-    let tiles: Vec<usize> = region.map_or_else(all, |region| region.tiles(layout));
+    let first = ahead.as_ref().map_or_else(Vec::new, |ahead| ahead.region.tiles(layout));
+    let mut tiles: Vec<usize> = (0..layout.tiles()).collect();
+    tiles.sort_by_key(|tile| first.binary_search(tile).is_err());
     progress.begin(tiles.len() as u64);
-    let traced = trace_tiles((scene, tiles.clone()), geometry, pool, keep, reuse, progress)?;
-    Ok(if region.is_some() { traced.spread(&tiles) } else { traced })
+    let threads = pool.current_num_threads();
+    let job = Job::new((scene, tiles.clone()), geometry, threads, keep, reuse, progress);
+    let (mut pilots, mut report) = (Pilots::default(), TraceReport::default());
+    if let Some(Ahead { region: _, show }) = ahead {
+        (pilots, report) = job.run(0..first.len(), &pilots, pool)?;
+        let transport = job.so_far(first.len(), pool)?;
+        let forest = Forest { tiles: vec![None; first.len()], ..Forest::of(scene) };
+        let traced = Traced { forest, transport, map: pilots.map.clone(), report };
+        show(traced.spread(&first))?;
+    }
+    let (pilots, rest) = job.run(first.len()..tiles.len(), &pilots, pool)?;
+    report += rest;
+    Ok(job.traced(pilots, report, (start, pool))?.spread(&tiles))
 }
 
 impl Traced {
@@ -234,29 +256,13 @@ pub(super) fn trace_tiles(
     geometry: &Geometry,
     pool: &ThreadPool,
     keep: Keep,
-    reuse: Forest,
     progress: &Progress,
 ) -> Result<Traced, TraceError> {
     let start = Instant::now();
-    let threads = pool.current_num_threads();
-    let wanted = PixelSet::of_tiles(Layout::new(scene.picture.size), tiles.iter().copied());
-    let asked = (scene, &wanted);
-    let pilots = Pilots::trace(asked, geometry, Some(pool), keep.bytes, progress)?;
-    let job = Job::new((scene, tiles), (geometry, &pilots), threads, keep, reuse, progress);
-    let outcomes = pool.broadcast(|_| job.work());
-    let mut report = TraceReport { rays: pilots.rays, ..TraceReport::default() };
-    let threads = outcomes.len() as f64;
-    for outcome in outcomes {
-        let Outcome { grown: _, rays, nodes, folding } = outcome?;
-        report.rays += rays;
-        report.nodes += nodes;
-        report.fold_seconds += folding.as_secs_f64() / threads;
-    }
-    let merging = Instant::now();
-    let (forest, transport) = job.finish(pool)?;
-    report.fold_seconds += merging.elapsed().as_secs_f64();
-    report.seconds = start.elapsed().as_secs_f64();
-    Ok(Traced { forest, transport, map: pilots.map, report })
+    let (count, threads) = (tiles.len(), pool.current_num_threads());
+    let job = Job::new((scene, tiles), geometry, threads, keep, Forest::default(), progress);
+    let (pilots, report) = job.run(0..count, &Pilots::default(), pool)?;
+    job.traced(pilots, report, (start, pool))
 }
 
 /// The next tile that nobody works on.
@@ -267,16 +273,14 @@ pub(super) fn claim(next: &AtomicUsize, tiles: usize) -> Option<usize> {
 
 /// All that the workers of one trace share.
 struct Job<'a> {
-    grower: Grower<'a>,
-    pilots: &'a Pilots,
+    scene: &'a Scene,
+    geometry: &'a Geometry,
     names: Names,
     layout: Layout,
     /// What is traced: the tile of every slot.
     tiles: Vec<usize>,
-    samples: u32,
     peaks: Vec<Option<Peak>>,
     progress: &'a Progress,
-    next: AtomicUsize,
     slots: Vec<Mutex<Slot>>,
     trie: Mutex<Trie>,
     ledger: Mutex<Ledger>,
@@ -284,6 +288,16 @@ struct Job<'a> {
     budget: usize,
     /// A tile whose trees need more than this is not kept.
     tile_limit: usize,
+}
+
+/// Some of a job's tiles, which are traced together.
+struct Round<'a> {
+    grower: Grower<'a>,
+    pilots: &'a Pilots,
+    /// The place of the next tile.
+    next: AtomicUsize,
+    /// Behind the last one's.
+    end: usize,
 }
 
 /// A block's trees may always take this many bytes while it is folded.
@@ -351,8 +365,8 @@ struct Outcome {
 
 impl<'a> Job<'a> {
     fn new(
-        (scene, tiles): (&Scene, Vec<usize>),
-        (geometry, pilots): (&'a Geometry, &'a Pilots),
+        (scene, tiles): (&'a Scene, Vec<usize>),
+        geometry: &'a Geometry,
         threads: usize,
         keep: Keep,
         reuse: Forest,
@@ -364,20 +378,21 @@ impl<'a> Job<'a> {
         let old_tiles = (0..reuse.tiles.len()).collect();
         let ledger =
             Ledger { bytes: reuse.bytes(), old: old_tiles, trees: Vec::new(), lists: Vec::new() };
-        let mut old = reuse.tiles.into_iter().map(|trees| trees.and_then(Arc::into_inner));
-        let slot = |_| Mutex::new(Slot { old: old.next().flatten(), ..Slot::default() });
+        let mut old = reuse.tiles;
+        let mut slot = |&tile: &usize| {
+            let old = old.get_mut(tile).and_then(Option::take).and_then(Arc::into_inner);
+            Mutex::new(Slot { old, ..Slot::default() })
+        };
         let budget = usize::try_from(keep.bytes).unwrap_or(usize::MAX);
         Job {
             kept: keep.what,
-            grower: Grower::new(scene, geometry).with_map(pilots.map.as_deref()),
-            pilots,
+            scene,
+            geometry,
             names: Names::new(geometry.materials(), scene.lights.len()),
             layout,
-            samples: scene.trace.samples,
             peaks: scene.materials.iter().map(|m| Some(Peak::of(m))).collect(),
             progress,
-            next: AtomicUsize::new(0),
-            slots: (0..tiles.len()).map(slot).collect(),
+            slots: tiles.iter().map(&mut slot).collect(),
             tiles,
             trie: Mutex::default(),
             ledger: Mutex::new(ledger),
@@ -386,20 +401,46 @@ impl<'a> Job<'a> {
         }
     }
 
+    /// Traces the tiles at some places on all threads; `known` are the first samples of tiles that were
+    /// traced before, and those given are of all.
+    fn run(
+        &self,
+        places: Range<usize>,
+        known: &Pilots,
+        pool: &ThreadPool,
+    ) -> Result<(Pilots, TraceReport), TraceError> {
+        let wanted = PixelSet::of_tiles(self.layout, self.tiles[places.clone()].iter().copied());
+        let (asked, bytes) = ((self.scene, &wanted), self.budget as u64);
+        let pilots = known.more(asked, self.geometry, Some(pool), bytes, self.progress)?;
+        let grower = Grower::new(self.scene, self.geometry).with_map(pilots.map.as_deref());
+        let next = AtomicUsize::new(places.start);
+        let round = Round { grower, pilots: &pilots, next, end: places.end };
+        let outcomes = pool.broadcast(|_| self.work(&round));
+        let mut report = TraceReport { rays: pilots.rays, ..TraceReport::default() };
+        let threads = outcomes.len() as f64;
+        for outcome in outcomes {
+            let Outcome { grown: _, rays, nodes, folding } = outcome?;
+            report.rays += rays;
+            report.nodes += nodes;
+            report.fold_seconds += folding.as_secs_f64() / threads;
+        }
+        drop(round);
+        Ok((pilots, report))
+    }
+
     /// One thread's share of the tiles.
-    fn work(&self) -> Result<Outcome, TraceError> {
-        let mut worker = self.grower.worker();
+    fn work(&self, round: &Round) -> Result<Outcome, TraceError> {
+        let mut worker = round.grower.worker();
         let mut folder = Folder::default();
         let mut scratch = KeptTrees::default();
         let mut outcome = Outcome::default();
-        while let Some(place) = claim(&self.next, self.tiles.len()) {
+        while let Some(place) = claim(&round.next, round.end) {
             // Memory of the earlier trace is written at once, new memory is taken when its size is
             // known.
             let mut old = self.take_old(place);
             let trees = old.as_mut().unwrap_or(&mut scratch);
             let tile = self.tiles[place];
-            let pilots = self.pilots.tree(tile);
-            let whole = self.tile((tile, pilots), &mut worker, &mut folder, trees, &mut outcome)?;
+            let whole = self.tile((tile, round), &mut worker, &mut folder, trees, &mut outcome)?;
             let folding = Instant::now();
             let transport = self.finish_tile(&mut folder);
             outcome.folding += folding.elapsed();
@@ -416,7 +457,7 @@ impl<'a> Job<'a> {
     /// Grows and folds the blocks of a tile; whether `trees` holds all of them in the end.
     fn tile(
         &self,
-        (tile, pilots): (usize, Option<&KeptTrees>),
+        (tile, Round { grower, pilots, next: _, end: _ }): (usize, &Round),
         worker: &mut Worker,
         folder: &mut Folder,
         trees: &mut KeptTrees,
@@ -424,7 +465,7 @@ impl<'a> Job<'a> {
     ) -> Result<bool, TraceError> {
         folder.begin_tile();
         trees.clear();
-        let grown = &mut outcome.grown;
+        let (grown, pilots) = (&mut outcome.grown, pilots.tree(tile));
         let mut whole = true;
         for block in 0..TILE_BLOCKS {
             grown.clear();
@@ -432,18 +473,18 @@ impl<'a> Job<'a> {
             let most = self.tile_limit.max(LEAST_BLOCK_LIMIT);
             let first = pilots.map(|pilots| pilots.recall_current(block));
             let known = Recalls { first, rest: None };
-            let stopped = self.grower.block_again(worker, at, known, grown, most, self.progress);
+            let stopped = grower.block_again(worker, at, known, grown, most, self.progress);
             stopped.map_err(|stop| TraceError::of(stop, self.budget))?;
             outcome.nodes += grown.nodes.len() as u64;
             let folding = Instant::now();
-            let counts = self.grower.counts(at);
+            let counts = grower.counts(at);
             folder.block(&mut grown.read(0), &counts, &self.names);
             outcome.folding += folding.elapsed();
             if whole {
-                if self.grower.is_adaptive() {
+                if grower.is_adaptive() {
                     trees.push_counts(&counts);
                 }
-                trees.push_grown(grown, self.grower.keys());
+                trees.push_grown(grown, grower.keys());
                 whole = trees.used_bytes() <= self.tile_limit;
             }
         }
@@ -452,7 +493,7 @@ impl<'a> Job<'a> {
 
     /// The tile's part of the matrix, in ids of the picture's trie.
     fn finish_tile(&self, folder: &mut Folder) -> TransportTile {
-        let weight = 1.0 / self.samples as f32;
+        let weight = 1.0 / self.scene.trace.samples as f32;
         let folded = folder.finish_tile(weight, &self.peaks);
         let mut tile = folded.tile;
         if self.kept == Kept::Matrix {
@@ -502,23 +543,47 @@ impl<'a> Job<'a> {
         self.slots[place].lock().expect("no worker panicked")
     }
 
-    /// Numbers the terms canonically and puts the tiles together.
-    fn finish(self, pool: &ThreadPool) -> Result<(Forest, Transport), Cancelled> {
-        use rayon::prelude::*;
-        let provisional = self.trie.into_inner().expect("no worker panicked");
-        self.progress.check()?;
-        let ranks = provisional.canonical_ranks();
-        self.progress.check()?;
-        let trie = provisional.renumbered(&ranks);
-        self.progress.check()?;
-        let slots = self.slots.into_iter().map(|s| s.into_inner().expect("no worker panicked"));
-        let (trees, mut tiles): (Vec<_>, Vec<_>) = slots.map(|s| (s.trees, s.transport)).unzip();
-        pool.install(|| {
-            tiles.par_iter_mut().for_each(|tile| tile.renumber(|id| ranks[id as usize]));
-        });
-        let (layout, samples) = (self.layout, self.samples);
-        let forest = Forest { layout, samples, tiles: trees };
-        let tiles = tiles.into_iter().map(Arc::new).collect();
-        Ok((forest, Transport { layout, samples, trie, tiles }))
+    /// The matrix of the tiles at the first places, which are traced, in their order.
+    fn so_far(&self, count: usize, pool: &ThreadPool) -> Result<Transport, Cancelled> {
+        let trie = self.trie.lock().expect("no worker panicked").clone();
+        let tiles = (0..count).map(|place| self.slot(place).transport.clone()).collect();
+        put_together(self.scene, (&trie, tiles), pool, self.progress)
     }
+
+    /// All of it, in the order of the places.
+    fn traced(
+        self,
+        pilots: Pilots,
+        mut report: TraceReport,
+        (start, pool): (Instant, &ThreadPool),
+    ) -> Result<Traced, TraceError> {
+        let merging = Instant::now();
+        let slots = self.slots.into_iter().map(|s| s.into_inner().expect("no worker panicked"));
+        let (trees, tiles): (Vec<_>, Vec<_>) = slots.map(|s| (s.trees, s.transport)).unzip();
+        let trie = self.trie.into_inner().expect("no worker panicked");
+        let transport = put_together(self.scene, (&trie, tiles), pool, self.progress)?;
+        let forest = Forest { tiles: trees, ..Forest::of(self.scene) };
+        report.fold_seconds += merging.elapsed().as_secs_f64();
+        report.seconds = start.elapsed().as_secs_f64();
+        Ok(Traced { forest, transport, map: pilots.map, report })
+    }
+}
+
+/// Numbers the terms canonically and puts tiles together, whose terms are those of `trie`.
+fn put_together(
+    scene: &Scene,
+    (trie, mut tiles): (&Trie, Vec<TransportTile>),
+    pool: &ThreadPool,
+    progress: &Progress,
+) -> Result<Transport, Cancelled> {
+    progress.check()?;
+    let ranks = trie.canonical_ranks();
+    progress.check()?;
+    let trie = trie.renumbered(&ranks);
+    progress.check()?;
+    pool.install(|| {
+        tiles.par_iter_mut().for_each(|tile| tile.renumber(|id| ranks[id as usize]));
+    });
+    let (layout, samples) = (Layout::new(scene.picture.size), scene.trace.samples);
+    Ok(Transport { layout, samples, trie, tiles: tiles.into_iter().map(Arc::new).collect() })
 }

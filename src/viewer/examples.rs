@@ -87,9 +87,9 @@ impl App {
         }
     }
 
+    /// Whether a text names what is kept of an example, of the one shown or of another.
     fn is_of_example(&self, text: &str) -> bool {
-        let kept = self.copied.as_ref().map(|copied| copied.kept.display().to_string());
-        kept.is_some_and(|kept| text.contains(&kept))
+        text.contains(&folder(&self.files.folders.cache).display().to_string())
     }
 }
 

@@ -295,6 +295,7 @@ impl App {
 
     /// Takes another document, which is still to be shown.
     pub(super) fn put_document(&mut self, document: Document) {
+        self.live.leave();
         self.document = document;
         self.changes = Changes::default();
         self.copied = None;

@@ -243,6 +243,12 @@ impl Live {
         self.order(Message::Keep(cache));
     }
 
+    /// Tells that what is wanted from now on is another document. What is being kept stays what it is,
+    /// and is written beside the new one's trace; what was to be kept once it is traced is not.
+    pub fn leave(&self) {
+        self.order(Message::Leave);
+    }
+
     /// The newest picture, if it is newer than the one taken before.
     pub fn take_shown(&self) -> Option<Shown> {
         self.board.take_shown()

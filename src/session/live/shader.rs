@@ -35,7 +35,7 @@ use crate::session::{Class, EditReport, Options, Session, Work};
 use crate::shade::gpu::{Gpu, Picture, Product};
 use curious::Curiosity;
 use glances::Glances;
-use keep::Keeping;
+use keep::{Keeping, Leaving};
 use running::Running;
 
 /// What the shader is told, by the window and by the other threads.
@@ -49,6 +49,8 @@ pub(super) enum Message {
     },
     /// What was traced, to be written there.
     Keep(PathBuf),
+    /// The wishes from now on are another document's.
+    Leave,
     Cancel(Target),
     Resume,
     Watch(Vec<String>),
@@ -141,6 +143,8 @@ pub(super) struct Shader {
     /// A cache to be opened before the wanted scene is traced.
     cache: Option<PathBuf>,
     keeping: Option<Keeping>,
+    /// The same of the document before; first in line.
+    leaving: Option<Leaving>,
     last: Option<EditReport>,
     /// Whether that was the opening of a cache.
     opened: bool,
@@ -190,6 +194,7 @@ impl Shader {
             hold: None,
             cache: None,
             keeping: None,
+            leaving: None,
             last: None,
             opened: false,
             busy_until: None,
@@ -270,6 +275,7 @@ impl Shader {
                 self.want(scene, cache);
             }
             Message::Keep(path) => self.keep(path),
+            Message::Leave => self.leave(),
             Message::Cancel(target) => self.cancel(target),
             Message::Resume => self.resume(),
             Message::Watch(paths) => self.badges.watch(paths),
@@ -497,9 +503,8 @@ impl Shader {
         report.milliseconds = job.taken.elapsed().as_secs_f64() * 1e3;
         (self.last, self.opened) = (Some(report), false);
         self.preview = None;
-        let old = self.whole.replace(session);
+        self.replace_whole(session);
         self.show();
-        drop(old);
     }
 
     /// The wanted scene is not traced; the last whole picture is shown again.
@@ -523,6 +528,7 @@ impl Shader {
                 self.put_on_hold(false);
             }
             (Target::Export, _, Some(export)) => export.progress.cancel(),
+            (Target::Keep, ..) if self.leaving.is_some() => self.leaving = None,
             (Target::Keep, ..) => self.keeping = None,
             _ => {}
         }
@@ -531,7 +537,8 @@ impl Shader {
     /// A panic left the pictures in an unknown state: nothing of them is kept.
     fn begin_anew(&mut self, text: String) {
         self.job.iter_mut().for_each(Running::drop_it);
-        (self.whole, self.preview, self.keeping) = (None, None, None);
+        (self.whole, self.preview) = (None, None);
+        (self.keeping, self.leaving) = (None, None);
         let scene = self.wanted.clone();
         self.hold = scene.map(|scene| Hold { scene, failed: true });
         self.board.tell(Event::Failed(text));

@@ -18,7 +18,7 @@ use crate::scene::Scene;
 use crate::scene::change::Change;
 use crate::session::cache::{CacheError, Fault};
 use crate::session::regrow::Regrow;
-use crate::session::trace::{Kept, TraceError};
+use crate::session::trace::{Ahead, Kept, TraceError};
 use crate::session::{Options, Session, Start};
 
 /// A scene to trace.
@@ -155,6 +155,15 @@ impl Tracer {
             None => self.geometry(task)?,
         };
         let divisor = self.divisor.round() as u32;
+        // What the person waits for is handed over at once; then another scene may come first.
+        let results = self.results.clone();
+        let hand_over = |stage, session| {
+            let session = Box::new(session);
+            let _ = results.send(Message::Staged { id: *id, stage, divisor, session });
+            control.past_first.store(true, Relaxed);
+            if control.superseded.load(Relaxed) { Err(Cancelled) } else { Ok(()) }
+        };
+        let show = |session| hand_over(Stage::Region, session);
         for (number, stage) in stages(scene, divisor, region).into_iter().enumerate() {
             if regrow.as_ref().is_some_and(|regrow| !regrow.shows(stage)) {
                 return Ok(None);
@@ -170,18 +179,20 @@ impl Tracer {
                 reuse: if whole { taken().unwrap_or_default() } else { Forest::default() },
             };
             let begun = Instant::now();
-            let part = region.filter(|_| stage == Stage::Region);
-            let session = Session::begin_with(start, part, &control.progress)?;
-            if number == 0 && stage != Stage::Region {
+            let ahead = region.filter(|_| whole && !is_tiny(scene));
+            let ahead = ahead.map(|region| Ahead { region, show: &show });
+            let session = match Session::begin_with(start, ahead, &control.progress) {
+                // Only a scene that waits ends a trace that nobody cancelled.
+                Err(TraceError::Cancelled) if !control.progress.is_cancelled() => return Ok(None),
+                session => session?,
+            };
+            if number == 0 {
                 self.adapt(scene, stage, divisor, begun.elapsed().as_secs_f64());
             }
             if whole {
                 return Ok(Some(Outcome::Whole(Box::new(session))));
             }
-            let session = Box::new(session);
-            let _ = self.results.send(Message::Staged { id: *id, stage, divisor, session });
-            control.past_first.store(true, Relaxed);
-            if control.superseded.load(Relaxed) {
+            if hand_over(stage, session).is_err() {
                 return Ok(None);
             }
         }
@@ -222,18 +233,20 @@ impl Regrow {
     }
 }
 
-/// The stages in which a scene is traced: those before the whole picture that are much quicker.
-/// With a region that is the second.
-fn stages(scene: &Scene, divisor: u32, region: Option<Region>) -> Vec<Stage> {
+/// Whether a scene is traced whole at once, without anything before it.
+fn is_tiny(scene: &Scene) -> bool {
     let [width, height] = scene.picture.size.map(u64::from);
-    let rays = width * height * u64::from(scene.trace.samples);
+    width * height * u64::from(scene.trace.samples) < TINY_RAYS
+}
+
+/// The stages in which a scene is traced: those before the whole picture that are much quicker. The
+/// region is seen instead of the second: it is whole before the rest of the last one is traced.
+fn stages(scene: &Scene, divisor: u32, region: Option<Region>) -> Vec<Stage> {
     let mut stages = Vec::new();
-    if rays >= TINY_RAYS && divisor > 1 {
+    if !is_tiny(scene) && divisor > 1 {
         stages.push(Stage::Coarse);
     }
-    if rays >= TINY_RAYS && region.is_some() {
-        stages.push(Stage::Region);
-    } else if rays >= TINY_RAYS && scene.trace.samples >= FEW_SAMPLES {
+    if !is_tiny(scene) && region.is_none() && scene.trace.samples >= FEW_SAMPLES {
         stages.push(Stage::OneSample);
     }
     stages.push(Stage::Whole);
@@ -271,7 +284,7 @@ mod tests {
         assert_eq!(at([1280, 720], 16, 1), [OneSample, Whole]);
         assert_eq!(at([48, 32], 16, 4), [Whole]);
         let part = Some(Region { corner: [10, 10], size: [50, 50] });
-        assert_eq!(stages(&scene([1280, 720], 16), 4, part), [Coarse, Stage::Region, Whole]);
+        assert_eq!(stages(&scene([1280, 720], 16), 4, part), [Coarse, Whole]);
         assert_eq!(stages(&scene([48, 32], 16), 4, part), [Whole]);
     }
 

@@ -11,6 +11,7 @@ mod histories;
 mod inspected;
 mod lamps;
 mod memory;
+mod named;
 mod parts;
 mod presets;
 pub(crate) mod random;

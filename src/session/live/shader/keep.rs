@@ -68,7 +68,74 @@ impl Keeping {
     }
 }
 
+/// What is to be kept of a document in whose place another one comes: the picture stays as it is.
+pub(super) struct Leaving {
+    keeping: Keeping,
+    /// What is kept.
+    scene: Arc<Scene>,
+    /// Taken when another picture comes; until then it is the whole picture.
+    session: Option<Session>,
+}
+
+impl Leaving {
+    /// What the status tells of it.
+    pub(super) fn work(&self) -> board::Work {
+        self.keeping.work()
+    }
+
+    /// The session to be kept, unless it was edited.
+    fn session<'a>(&'a self, whole: Option<&'a Session>) -> Option<&'a Session> {
+        let same = |whole: &&Session| Arc::ptr_eq(&whole.shared_scene(), &self.scene);
+        self.session.as_ref().or(whole.filter(same))
+    }
+}
+
 impl Shader {
+    /// What is wanted from now on is another document: what is to be kept is of the one before.
+    pub(super) fn leave(&mut self) {
+        if !self.in_step() {
+            return self.refuse_to_keep("another scene was opened");
+        }
+        let Some(keeping) = self.keeping.take() else { return };
+        self.finish_leaving();
+        if let Some(whole) = &self.whole {
+            self.leaving = Some(Leaving { keeping, scene: whole.shared_scene(), session: None });
+        }
+    }
+
+    /// Shows another whole picture; the one before stays as long as it is being kept.
+    pub(super) fn replace_whole(&mut self, session: Session) {
+        let Some(mut old) = self.whole.replace(session) else { return };
+        if let Some(leaving) = &mut self.leaving
+            && leaving.session(Some(&old)).is_some()
+        {
+            drop(old.take_trees());
+            leaving.session.get_or_insert(old);
+        }
+    }
+
+    /// Writes some of what is kept of the document before. Where the other one needed no other picture,
+    /// nothing is left of it.
+    fn work_on_leaving(&mut self) {
+        let Some(mut leaving) = self.leaving.take() else { return };
+        if leaving.session(self.whole.as_ref()).is_none() {
+            return;
+        }
+        let Leaving { scene: _, session, keeping } = &mut leaving;
+        let Some(session) = session.as_ref().or(self.whole.as_ref()) else { return };
+        match keeping.go_on(session) {
+            Ok(None) => self.leaving = Some(leaving),
+            written => self.tell_kept(leaving.keeping.path, written),
+        }
+    }
+
+    /// The same to its end: for what is wanted again, or when the next document is left.
+    fn finish_leaving(&mut self) {
+        while self.leaving.is_some() {
+            self.work_on_leaving();
+        }
+    }
+
     /// Wants the picture to be kept, as soon as it is whole.
     pub(super) fn keep(&mut self, path: PathBuf) {
         let (progress, due) = (Arc::default(), Instant::now());
@@ -95,35 +162,42 @@ impl Shader {
 
     /// How long until something can be written.
     pub(super) fn keeping_wait(&self) -> Option<Duration> {
+        if self.leaving.is_some() {
+            return Some(Duration::ZERO);
+        }
         let keeping = self.keeping.as_ref().filter(|_| self.in_step())?;
         Some(keeping.due.saturating_duration_since(Instant::now()))
     }
 
     /// Writes some of what is to be kept, if it is time.
     pub(super) fn work_on_keeping(&mut self) {
+        if self.leaving.is_some() {
+            return self.work_on_leaving();
+        }
         if self.keeping_wait() != Some(Duration::ZERO) {
             return;
         }
         let (Some(mut keeping), Some(whole)) = (self.keeping.take(), &self.whole) else { return };
         match keeping.go_on(whole) {
-            Ok(None) => {
-                self.keeping = Some(keeping);
-                return;
-            }
-            Ok(Some(CacheReport { file_bytes, .. })) => {
-                self.board.tell(Event::Kept { path: keeping.path, bytes: file_bytes });
-            }
-            Err(error) => {
-                let text = format!("what was traced is not kept: {error}");
-                self.board.tell(Event::Failed(text));
-            }
+            Ok(None) => self.keeping = Some(keeping),
+            written => self.tell_kept(keeping.path, written),
         }
+    }
+
+    fn tell_kept(&mut self, path: PathBuf, written: Result<Option<CacheReport>, CacheError>) {
+        self.board.tell(match written {
+            Ok(report) => Event::Kept { path, bytes: report.map_or(0, |r| r.file_bytes) },
+            Err(error) => Event::Failed(format!("what was traced is not kept: {error}")),
+        });
         self.report();
         self.board.wake();
     }
 
     /// Sends a cache to the tracer, which is free: it may hold what is wanted, or nearly so.
     pub(super) fn begin_opening(&mut self, scene: Arc<Scene>, cache: PathBuf, taken: Instant) {
+        if self.leaving.as_ref().is_some_and(|leaving| leaving.keeping.path == cache) {
+            self.finish_leaving();
+        }
         let reason = name(&cache);
         let job = Running { verb: "opening", reason, ..Running::new(scene, taken) };
         self.send(job, None, None, Some(cache));
@@ -133,10 +207,9 @@ impl Shader {
     pub(super) fn take_opened(&mut self, mut session: Session, taken: Instant) {
         let Some(wanted) = self.wanted.clone() else { return };
         session.move_to(&self.pool);
-        let old = self.whole.replace(session);
+        self.replace_whole(session);
         self.opened = true;
         self.opened = self.reach_whole(&wanted, taken).is_ok();
-        drop(old);
     }
 
     /// A cache did not hold what it should: the scene is traced.

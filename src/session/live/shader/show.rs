@@ -92,7 +92,9 @@ impl Shader {
             let (what, progress) = (what.clone(), progress.clone());
             Some(board::Work { what, progress, target: Target::Export })
         };
-        let work = trace.or_else(export).or_else(|| Some(self.keeping.as_ref()?.work()));
+        let leaving = || Some(self.leaving.as_ref()?.work());
+        let kept = || Some(self.keeping.as_ref()?.work());
+        let work = trace.or_else(export).or_else(leaving).or_else(kept);
         self.board.report(status, work, self.heard);
     }
 

@@ -231,6 +231,48 @@ fn an_edit_right_after_the_opening_does_not_forget_the_cache() {
 }
 
 #[test]
+fn a_document_that_is_left_is_kept_as_it_was_and_opens_again_without_rays() {
+    let folder = folder();
+    let place = |name: &str| path_of(&folder.path().join(name));
+    let (first, second) = (place("first.toml"), place("second.toml"));
+    let glass = scene("glass", [400, 300], 2);
+    let whitted = scene("whitted", [160, 90], 4);
+    let mut window = Window::showing(&glass);
+    window.live.keep(first.clone());
+    window.live.leave();
+    window.live.want_kept(Arc::new(whitted.clone()), second.clone());
+    window.wait("the second", |w| w.status.in_step && *w.shown().scene == whitted);
+    window.shows_whole(&whitted);
+    // At once, whether the first is written to its end or not.
+    window.live.keep(second.clone());
+    for (scene, path) in [(&glass, &first), (&whitted, &second), (&glass, &first)] {
+        window.live.leave();
+        window.live.want_kept(Arc::new(scene.clone()), path.clone());
+        window.wait("again", |w| w.status.in_step && *w.shown().scene == *scene);
+        window.shows_whole(scene);
+        assert_eq!((window.last().rays.total(), window.status.opened), (0, true));
+    }
+    window.wait("no job", |w| !is_tracing(w));
+    assert_eq!(kept(&window), [&*first, &*second]);
+}
+
+#[test]
+fn what_is_not_whole_when_it_is_left_is_not_kept() {
+    let folder = folder();
+    let path = path_of(&folder.path().join("scene.toml"));
+    let mut window = Window::new(OPTIONS);
+    window.want(&slow());
+    window.wait("a preview", |w| w.newest.is_some());
+    window.live.keep(path);
+    window.live.leave();
+    let plain = scene("plain", [64, 40], 1);
+    window.want(&plain);
+    window.wait("the other", |w| w.status.in_step && *w.shown().scene == plain);
+    let [Event::Failed(text)] = &window.events[..] else { panic!("{:?}", window.events) };
+    assert!(text.contains("another scene was opened") && files(&folder) == 0, "{text}");
+}
+
+#[test]
 fn another_document_is_opened_from_its_cache_while_one_is_traced() {
     let whitted = scene("whitted", [160, 90], 4);
     let (_folder, path) = cache_of(&whitted);

@@ -77,6 +77,77 @@ fn a_region_is_whole_before_the_rest_and_follows_edits() {
     window.shows_whole(&edited);
 }
 
+/// A window in which a region of a scene is just shown, the rest is being traced, and the camera of
+/// which will have moved.
+fn tracing_beside_a_region(options: Options) -> (Window, Scene) {
+    let mut window = Window::new(options);
+    let scene = scene("glass", [160, 96], 24);
+    window.want(&scene);
+    window.wait("the first picture", |w| w.status.in_step);
+    window.live.look_first(Some(Region { corner: [64, 32], size: [40, 30] }));
+    let moved = with(&scene, "camera.fov_degrees", "30");
+    window.want(&moved);
+    window.wait("the region", |w| w.shown().stage == Stage::Region);
+    (window, moved)
+}
+
+#[test]
+fn a_region_costs_no_ray_and_another_one_may_be_named_while_it_is_traced() {
+    let (mut window, moved) = tracing_beside_a_region(OPTIONS);
+    window.live.look_first(Some(Region { corner: [0, 0], size: [160, 96] }));
+    window.wait("the rest", |w| w.status.in_step);
+    window.shows_whole(&moved);
+    assert_eq!(window.last().rays, fresh(&moved).trace_report().rays);
+    let again = with(&moved, "camera.fov_degrees", "33");
+    window.want(&again);
+    window.wait("again", |w| w.status.in_step && *w.shown().scene == again);
+    window.shows_whole(&again);
+    assert_eq!(window.last().rays, fresh(&again).trace_report().rays);
+    // What it kept of the region answers as everything else does.
+    let mirror = with(&again, "materials.tiles.reflect", "0.3");
+    window.want(&mirror);
+    window.wait("grown", |w| w.status.in_step && *w.shown().scene == mirror);
+    window.shows_whole(&mirror);
+    assert_eq!((window.last().class, window.last().rays.camera), (Class::Regrow, 0));
+}
+
+#[test]
+fn a_cancel_beside_a_region_brings_the_whole_picture_back() {
+    let (mut window, moved) = tracing_beside_a_region(OPTIONS);
+    window.live.cancel();
+    window.wait("held", |w| w.status.held && w.shown().stage == Stage::Whole);
+    window.shows_whole(&with(&moved, "camera.fov_degrees", "24"));
+    window.live.resume();
+    window.wait("resumed", |w| w.status.in_step);
+    window.shows_whole(&moved);
+}
+
+#[test]
+fn a_camera_that_moves_on_beside_a_region_ends_as_a_fresh_session() {
+    let (mut window, moved) = tracing_beside_a_region(OPTIONS);
+    let mut last = moved;
+    for degrees in ["31", "32", "34", "36"] {
+        last = with(&last, "camera.fov_degrees", degrees);
+        window.want(&last);
+        window.want(&with(&last, "materials.tiles.diffuse", "0.3"));
+    }
+    window.want(&last);
+    window.wait("the last", |w| w.status.in_step && *w.shown().scene == last);
+    window.shows_whole(&last);
+}
+
+#[test]
+fn a_region_is_within_the_budget() {
+    let whole = fresh(&scene("glass", [160, 96], 24));
+    let memory = whole.kept_bytes() - whole.forest().bytes() as u64 * 3 / 4;
+    let (mut window, moved) = tracing_beside_a_region(Options { memory, ..OPTIONS });
+    let edited = with(&moved, "materials.tiles.diffuse", "0.3");
+    window.want(&edited);
+    window.wait("the rest", |w| w.status.in_step);
+    window.shows_whole(&edited);
+    assert!(window.status.bytes - window.status.matrix_bytes <= memory, "{:?}", window.status);
+}
+
 #[test]
 fn a_region_beside_the_picture_is_no_stage() {
     let scene = scene("glass", [240, 135], 8);

@@ -134,6 +134,21 @@ fn what_was_traced_of_examples_opens_without_a_ray() {
 }
 
 #[test]
+fn an_example_that_is_opened_again_casts_no_ray() {
+    let mut window = fresh();
+    window.open_example("Three matte solids");
+    let first = window.picture();
+    for other in ["Machined part", "Whitted's spheres"] {
+        window.menu(&["Help", "Welcome"]);
+        window.open_example(other);
+        window.menu(&["Help", "Welcome"]);
+        window.open_example("Three matte solids");
+        window.until_text("opened from what was kept · ");
+        assert!(window.shows("· 0 rays") && window.picture() == first);
+    }
+}
+
+#[test]
 fn an_example_is_a_copy() {
     let folder = tempfile::tempdir().unwrap();
     let target = folder.path().join("mine.toml");
