@@ -89,6 +89,8 @@ const YIELD: Duration = Duration::from_millis(150);
 /// How often the window is told of a job's progress.
 const TICK: Duration = Duration::from_millis(50);
 
+/// Why a scene is traced of which nothing is known.
+const NEW: &str = "the scene is new";
 const UNTRACED: &str =
     "the picture was not traced to its end: let it be traced, and export it again";
 
@@ -145,6 +147,8 @@ pub(super) struct Shader {
     keeping: Option<Keeping>,
     /// The same of the document before; first in line.
     leaving: Option<Leaving>,
+    /// What is wanted is another document than what was traced last.
+    is_other: bool,
     last: Option<EditReport>,
     /// Whether that was the opening of a cache.
     opened: bool,
@@ -195,6 +199,7 @@ impl Shader {
             cache: None,
             keeping: None,
             leaving: None,
+            is_other: false,
             last: None,
             opened: false,
             busy_until: None,
@@ -332,12 +337,12 @@ impl Shader {
 
     /// Edits and shows the whole picture if that needs no ray; a trace is then for nothing.
     fn reach_whole(&mut self, wanted: &Arc<Scene>, taken: Instant) -> Result<(), Work> {
-        let new = || Work::Trace("the scene is new".into());
+        let new = || Work::Trace(NEW.into());
         let whole = self.whole.as_mut().ok_or_else(new)?;
         whole.defer(self.product.is_some());
         let report = whole.edit_without_rays(wanted)?;
         self.preview = None;
-        self.hold = None;
+        (self.hold, self.is_other) = (None, false);
         self.job.iter_mut().for_each(Running::drop_it);
         self.edited(report, taken);
         Ok(())
@@ -386,7 +391,7 @@ impl Shader {
             return self.begin_opening(scene, cache, taken);
         }
         let known = self.whole.as_ref().map(compiled);
-        let reason = work.reason().to_owned();
+        let reason = if self.is_other { NEW } else { work.reason() }.to_owned();
         let mending = match (work, &mut self.whole) {
             (Work::Regrow(plan), Some(whole)) => {
                 // What a dropped trace of other surfaces left is no picture of this scene.

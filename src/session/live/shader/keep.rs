@@ -93,6 +93,7 @@ impl Leaving {
 impl Shader {
     /// What is wanted from now on is another document: what is to be kept is of the one before.
     pub(super) fn leave(&mut self) {
+        self.is_other = true;
         if !self.in_step() {
             return self.refuse_to_keep("another scene was opened");
         }
@@ -105,6 +106,7 @@ impl Shader {
 
     /// Shows another whole picture; the one before stays as long as it is being kept.
     pub(super) fn replace_whole(&mut self, session: Session) {
+        self.is_other = false;
         let Some(mut old) = self.whole.replace(session) else { return };
         if let Some(leaving) = &mut self.leaving
             && leaving.session(Some(&old)).is_some()

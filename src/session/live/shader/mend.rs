@@ -54,7 +54,7 @@ impl Shader {
                 }
                 let milliseconds = job.taken.elapsed().as_secs_f64() * 1e3;
                 self.last = Some(EditReport { milliseconds, ..report });
-                self.opened = false;
+                (self.opened, self.is_other) = (false, false);
                 self.preview = None;
                 self.show();
             }

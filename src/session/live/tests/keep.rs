@@ -243,6 +243,7 @@ fn a_document_that_is_left_is_kept_as_it_was_and_opens_again_without_rays() {
     window.live.want_kept(Arc::new(whitted.clone()), second.clone());
     window.wait("the second", |w| w.status.in_step && *w.shown().scene == whitted);
     window.shows_whole(&whitted);
+    assert_eq!(window.last().reason.as_deref(), Some("the scene is new"));
     // At once, whether the first is written to its end or not.
     window.live.keep(second.clone());
     for (scene, path) in [(&glass, &first), (&whitted, &second), (&glass, &first)] {
