@@ -12,6 +12,17 @@ use crate::scene::{Camera, Placement, Scene, Shape, Solid};
 
 /// Half the height of a new solid, in parts of the picture's height.
 const HALF: f64 = 0.12;
+/// Where a new solid may stand, from the middle of the picture, in parts of its height.
+const PLACES: [[f64; 2]; 8] = [
+    [0.0, 0.0],
+    [0.33, 0.0],
+    [-0.33, 0.0],
+    [0.66, 0.0],
+    [-0.66, 0.0],
+    [0.0, -0.33],
+    [0.33, -0.33],
+    [-0.33, -0.33],
+];
 /// How far a copy stands from what it was copied from, in its widths.
 const ASIDE: f64 = 1.1;
 /// The same of a solid without a width, in parts of the distance between eye and target.
@@ -32,20 +43,30 @@ pub struct Stand {
 }
 
 impl Stand {
-    /// In the middle of the picture, where the camera looks at; or in front of what is seen there, at
-    /// the depth `seen`, if that hides it.
-    pub fn new(camera: &Camera, size: [u32; 2], seen: Option<f64>) -> Stand {
+    /// As far away as where the camera looks at: in the middle of the picture, or beside it where
+    /// something hides that; in front of what is in the middle if all is hidden. `seen` gives the depth
+    /// of what is seen at a point in pixels, if anything is.
+    pub fn new(camera: &Camera, size: [u32; 2], seen: &dyn Fn([f64; 2]) -> Option<f64>) -> Stand {
         let view = View::new(camera, size);
-        let target = camera.eye.distance(camera.target);
+        let [width, height] = size.map(f64::from);
         let half = |depth: f64| neat(view.height_at(depth) * HALF);
-        // Room for what is larger than its half, and never behind the eye.
-        let before = |seen: f64| (seen - 2.0 * half(seen)).max(0.5 * seen);
-        let depth = seen.map_or(target, |seen| target.min(before(seen)));
-        let half = half(depth);
-        if depth == target {
-            return Stand { at: camera.target, half };
+        let target = camera.eye.distance(camera.target);
+        let places = PLACES.map(|[x, y]| [width / 2.0 + x * height, height / 2.0 + y * height]);
+        let free =
+            |at: &[f64; 2]| seen(*at).is_none_or(|depth| depth > target - half(target) / 2.0);
+        let inside = |at: &[f64; 2]| at[0] > 0.1 * width && at[0] < 0.9 * width;
+        let place = places.into_iter().find(|at| inside(at) && free(at));
+        if place == Some(places[0]) {
+            return Stand { at: camera.target, half: half(target) };
         }
-        let at = size.map(|side| f64::from(side) / 2.0);
+        let depth = match place {
+            Some(_) => target,
+            // With room for what is larger than its half, and never behind the eye.
+            None => {
+                seen(places[0]).map_or(target, |seen| (seen - 2.0 * half(seen)).max(0.5 * seen))
+            }
+        };
+        let (at, half) = (place.unwrap_or(places[0]), half(depth));
         Stand { at: tidy(view.point(Seen { at, depth }), half / 4.0), half }
     }
 
@@ -225,28 +246,63 @@ mod tests {
         eyes.into_iter().map(camera).collect()
     }
 
+    /// A picture in which the same is seen everywhere, this far away.
+    fn wall(seen: Option<f64>) -> impl Fn([f64; 2]) -> Option<f64> {
+        move |_| seen
+    }
+
+    /// Where a new solid is seen from the middle of the picture, in its heights, and how far away.
+    fn standing(camera: &Camera, seen: &dyn Fn([f64; 2]) -> Option<f64>) -> ([f64; 2], f64) {
+        let view = View::new(camera, SIZE);
+        let Stand { at, half } = Stand::new(camera, SIZE, seen);
+        let place = view.project(at).expect("before the eye");
+        let share = half / view.height_at(place.depth);
+        assert!((0.08..0.18).contains(&share), "{share}");
+        let [x, y] = place.at;
+        ([(x - 320.0) / 360.0, (y - 180.0) / 360.0], place.depth)
+    }
+
     #[test]
-    fn a_new_solid_stands_in_the_middle_of_the_picture_and_before_what_hides_it() {
+    fn a_new_solid_stands_where_the_camera_looks_at_or_before_what_is_everywhere() {
         for camera in cameras() {
-            let view = View::new(&camera, SIZE);
             let target = camera.eye.distance(camera.target);
             for seen in [None, Some(3.0 * target), Some(target), Some(0.3 * target)] {
-                let Stand { at, half } = Stand::new(&camera, SIZE, seen);
-                let place = view.project(at).expect("before the eye");
-                let off = DVec2::from(place.at) - DVec2::new(320.0, 180.0);
-                assert!(off.length() < 8.0, "{camera:?} {seen:?}: {off}");
-                let hidden = place.depth + half > seen.unwrap_or(f64::MAX);
-                assert!(!hidden && place.depth <= target * 1.01, "{camera:?} {seen:?}");
-                let share = half / view.height_at(place.depth);
-                assert!((0.08..0.18).contains(&share), "{share}");
+                let ([x, y], depth) = standing(&camera, &wall(seen));
+                assert!(x.abs().max(y.abs()) < 0.02, "{camera:?} {seen:?}: {x} {y}");
+                assert!(depth <= seen.unwrap_or(target) * 1.01, "{camera:?} {seen:?}: {depth}");
+                let near = seen.is_some_and(|seen| seen < target);
+                assert_eq!(depth < 0.9 * target, near, "{camera:?} {seen:?}: {depth}");
             }
         }
     }
 
     #[test]
+    fn a_new_solid_stands_beside_what_is_in_the_middle() {
+        for camera in cameras() {
+            let target = camera.eye.distance(camera.target);
+            let mut taken: Vec<[f64; 2]> = Vec::new();
+            for [x, y] in PLACES {
+                let near = |at: [f64; 2]| {
+                    let off = |p: &[f64; 2]| (at[0] - p[0]).abs().max((at[1] - p[1]).abs());
+                    taken.iter().any(|p| off(p) < 60.0).then_some(0.6 * target)
+                };
+                let (place, depth) = standing(&camera, &near);
+                let off = (place[0] - x).abs().max((place[1] - y).abs());
+                assert!(off < 0.02, "{camera:?}: {place:?}");
+                assert!((depth / target - 1.0).abs() < 0.02, "{camera:?}: {depth}");
+                taken.push([320.0 + x * 360.0, 180.0 + y * 360.0]);
+            }
+        }
+        // A narrow picture has room above the middle only.
+        let hidden = |[_, y]: [f64; 2]| (y > 170.0).then_some(3.0);
+        let stand = Stand::new(&Camera::default(), [60, 360], &hidden);
+        assert!(stand.at.z > 0.5 && stand.at.x == 0.0, "{stand:?}");
+    }
+
+    #[test]
     fn every_new_shape_has_its_key_and_surrounds_where_it_stands() {
         for camera in cameras() {
-            let stand = Stand::new(&camera, SIZE, None);
+            let stand = Stand::new(&camera, SIZE, &wall(None));
             for key in SHAPES {
                 let (shape, placement) = fresh(key, &camera, stand);
                 assert_eq!(shape_key(&shape), *key);

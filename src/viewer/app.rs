@@ -194,8 +194,7 @@ impl App {
         self.receive_files(&ctx);
         self.receive_material(&ctx);
         self.open_palette(&ctx);
-        let pressed = self.shortcuts(&ctx);
-        let mut commands = self.heeded(pressed);
+        let mut commands = self.shortcuts(&ctx);
         let mut edited = self.document.scene().clone();
         let mut changed = false;
         self.bars(ui, &mut commands);
@@ -229,7 +228,7 @@ impl App {
         commands.extend(self.palette_ui(&ctx));
         self.keys_ui(&ctx);
         for command in commands {
-            self.run(&ctx, command);
+            self.heed(&ctx, command);
         }
         self.watch_costs();
         self.ask_pixels();

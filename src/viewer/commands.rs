@@ -57,17 +57,13 @@ impl App {
         pressed.collect()
     }
 
-    /// The commands whose keys were pressed and that can be done; why others cannot is said.
-    pub(super) fn heeded(&mut self, mut pressed: Vec<Command>) -> Vec<Command> {
-        pressed.retain(|command| match self.refusal(*command) {
+    /// Does what a command says, or says why it cannot be done: keys are pressed whatever there is.
+    pub(super) fn heed(&mut self, ctx: &Context, command: Command) {
+        match self.refusal(command) {
             // Escape leaves whatever there is to leave, also nothing.
-            Some(why) if *command != Command::Stop => {
-                self.notices.say(why);
-                false
-            }
-            _ => true,
-        });
-        pressed
+            Some(why) if command != Command::Stop => self.notices.say(why),
+            _ => self.run(ctx, command),
+        }
     }
 
     /// A gesture ends when no button is down, and wheel and keys rest.
@@ -89,7 +85,7 @@ impl App {
     }
 
     /// Does what a command says.
-    pub(super) fn run(&mut self, ctx: &Context, command: Command) {
+    fn run(&mut self, ctx: &Context, command: Command) {
         let dots = ctx.pixels_per_point();
         if let Some(part) = command.part() {
             let open = self.open_flag(part);

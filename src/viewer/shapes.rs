@@ -164,8 +164,8 @@ impl App {
             Selection::Scene | Selection::Light(_) => 0,
         };
         let size = scene.picture.size;
-        let seen = self.live.pick(size.map(|side| f64::from(side) / 2.0));
-        let stand = Stand::new(&scene.camera, size, seen.map(|picked| picked.depth));
+        let seen = |at: [f64; 2]| self.live.pick(at).map(|picked| picked.depth);
+        let stand = Stand::new(&scene.camera, size, &seen);
         let solid = add_solid(&mut scene, key, stand, material, operand.unwrap_or(0));
         if let (Thing::Solid(solid), Some((file, mesh))) = (solid, mesh) {
             stand.fit(&mut scene.solids[solid], file, mesh);
