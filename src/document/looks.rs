@@ -160,6 +160,7 @@ mod tests {
     use super::*;
     use crate::color::Rgb;
     use crate::document::Document;
+    use crate::document::things::{Thing, duplicate, remove, rename};
 
     const TEXT: &str = "version = 1 # mine\n[camera]\nheight = 4\n[lights.key]\npoint = [0, 0, 5]\n\
         [materials.tiles]\ndiffuse = 0.75 # dull\n[materials.rug]\n\
@@ -238,6 +239,38 @@ mod tests {
             let paths: Vec<&str> = plain.looks.list[0].settings.iter().map(|s| &*s.path).collect();
             assert_eq!(paths, ["materials.\"t.iles\".diffuse", "solids.a.material"], "{worn:?}");
             assert_eq!(plain.solids[0].material, 0, "{worn:?}");
+        }
+    }
+
+    #[test]
+    fn looks_follow_solids_that_are_copied_renamed_and_deleted() {
+        for worn in [None, Some("night")] {
+            let mut document = document();
+            let dressed = document.scene().dressed(worn).unwrap();
+            document.change(dressed);
+            let settings = |document: &Document| -> Vec<String> {
+                let plain = document.scene().undressed();
+                plain.looks.list[0].settings.iter().map(|s| s.path.clone()).collect()
+            };
+            let paths = |solid: &str| {
+                let solid = format!("solids.{solid}.material");
+                ["lights.key.on".into(), "materials.tiles.diffuse".into(), solid]
+            };
+            edit(&mut document, |scene| assert!(duplicate(scene, Thing::Solid(0)).is_in(scene)));
+            assert_eq!(settings(&document), paths("a"), "{worn:?}: the copy has none of its own");
+            assert_eq!(document.scene().undressed().solids[0].material, 0, "{worn:?}");
+            edit(&mut document, |scene| rename(scene, Thing::Solid(0), "b c").unwrap());
+            assert_eq!(settings(&document), paths("\"b c\""), "{worn:?}");
+            edit(&mut document, |scene| remove(scene, Thing::Solid(1)).unwrap());
+            assert_eq!(settings(&document), paths("\"b c\""), "{worn:?}");
+            edit(&mut document, |scene| remove(scene, Thing::Solid(0)).unwrap());
+            assert_eq!(settings(&document), paths("")[..2], "{worn:?}");
+            let written = text(&document);
+            assert!(!written.contains("solids.") && written.contains("# dull"), "{written}");
+            for _ in 0..4 {
+                assert!(document.undo());
+            }
+            assert_eq!(settings(&document), paths("a"), "{worn:?}");
         }
     }
 

@@ -8,6 +8,7 @@ mod open;
 mod outline;
 mod patch;
 mod patch_looks;
+pub mod placing;
 pub mod presets;
 pub mod recovery;
 mod relocate;

@@ -1,14 +1,17 @@
-//! Adds, duplicates, renames and removes lights and materials: each one edit of a scene.
+//! Adds, duplicates, renames and removes lights, materials and solids: each one edit of a scene.
 
-use crate::scene::{Light, LightPlace, Material, Scene, Solid};
+use super::placing::{Stand, aside, fresh};
+use crate::scene::{Light, LightPlace, Material, Scene, Shape, Solid};
 
-/// A light or a material of a scene, by its index.
+/// A light, a material or a solid of a scene, by its index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Thing {
     /// The light with this index.
     Light(usize),
     /// The material with this index.
     Material(usize),
+    /// The solid with this index.
+    Solid(usize),
 }
 
 impl Thing {
@@ -17,6 +20,7 @@ impl Thing {
         match self {
             Thing::Light(_) => "light",
             Thing::Material(_) => "material",
+            Thing::Solid(_) => "solid",
         }
     }
 
@@ -25,6 +29,7 @@ impl Thing {
         match self {
             Thing::Light(i) => &scene.lights[i].name,
             Thing::Material(i) => &scene.materials[i].name,
+            Thing::Solid(i) => &scene.solids[i].name,
         }
     }
 
@@ -32,13 +37,37 @@ impl Thing {
         match self {
             Thing::Light(i) => &mut scene.lights[i].name,
             Thing::Material(i) => &mut scene.materials[i].name,
+            Thing::Solid(i) => &mut scene.solids[i].name,
+        }
+    }
+
+    /// Whether there is such a thing in a scene.
+    pub fn is_in(self, scene: &Scene) -> bool {
+        match self {
+            Thing::Light(i) => i < scene.lights.len(),
+            Thing::Material(i) => i < scene.materials.len(),
+            Thing::Solid(i) => i < scene.solids.len(),
+        }
+    }
+
+    fn index(self) -> usize {
+        let (Thing::Light(i) | Thing::Material(i) | Thing::Solid(i)) = self;
+        i
+    }
+
+    /// The names of all things of its kind.
+    fn names(self, scene: &Scene) -> Vec<&str> {
+        match self {
+            Thing::Light(_) => scene.lights.iter().map(|light| light.name.as_str()).collect(),
+            Thing::Material(_) => material_names(scene),
+            Thing::Solid(_) => scene.solids.iter().map(|solid| solid.name.as_str()).collect(),
         }
     }
 }
 
 /// A new white light, behind all others, so that no index shifts.
 pub fn add_light(scene: &mut Scene, place: LightPlace) -> Thing {
-    let name = first_free("light", 1, light_names(scene));
+    let name = first_free("light", 1, Thing::Light(0).names(scene));
     scene.lights.push(Light { place, ..Light::new(name) });
     Thing::Light(scene.lights.len() - 1)
 }
@@ -50,47 +79,81 @@ pub fn add_material(scene: &mut Scene) -> Thing {
     Thing::Material(scene.materials.len() - 1)
 }
 
+/// A new solid of a shape with this key in a scene file, behind all others, so that no index shifts;
+/// named after its key. What is made of others begins with `operand`; all else is of the material with
+/// the index `material`, and of a new one in a scene without materials. A mesh is still to be read.
+pub fn add_solid(
+    scene: &mut Scene,
+    key: &str,
+    stand: Stand,
+    material: usize,
+    operand: usize,
+) -> Thing {
+    if scene.materials.is_empty() {
+        add_material(scene);
+    }
+    let (mut shape, placement) = fresh(key, &scene.camera, stand);
+    if let Shape::Csg { operation: _, operands } = &mut shape {
+        *operands = vec![operand];
+    }
+    let material = material.min(scene.materials.len() - 1);
+    let name = first_free(key, 1, Thing::Solid(0).names(scene));
+    scene.solids.push(Solid { placement, ..Solid::new(name, shape, material) });
+    Thing::Solid(scene.solids.len() - 1)
+}
+
 /// The first of `stem`, `stem 2`, `stem 3` … that no material has.
 pub(super) fn free_material_name(scene: &Scene, stem: &str) -> String {
     first_free(stem, 1, material_names(scene))
 }
 
 /// A copy, behind all others, named `NAME 2` or the next number that is free.
+///
+/// That of a solid stands [`aside`], so that it is seen. It is a solid of its own also where the original
+/// is an operand; where that is made of others, both are made of the same ones.
 pub fn duplicate(scene: &mut Scene, thing: Thing) -> Thing {
     let (stem, number) = numbered(thing.name(scene));
+    let name = first_free(stem, number + 1, thing.names(scene));
     match thing {
         Thing::Light(i) => {
-            let name = first_free(stem, number + 1, light_names(scene));
             scene.lights.push(Light { name, ..scene.lights[i].clone() });
             Thing::Light(scene.lights.len() - 1)
         }
         Thing::Material(i) => {
-            let name = first_free(stem, number + 1, material_names(scene));
             scene.materials.push(Material { name, ..scene.materials[i].clone() });
             Thing::Material(scene.materials.len() - 1)
+        }
+        Thing::Solid(i) => {
+            let way = aside(scene, i);
+            let mut copy = Solid { name, ..scene.solids[i].clone() };
+            copy.placement.translate += way;
+            scene.solids.push(copy);
+            Thing::Solid(scene.solids.len() - 1)
         }
     }
 }
 
-/// Gives another name, spaces around it aside; what is wrong with the name, if anything.
-pub fn rename(scene: &mut Scene, thing: Thing, name: &str) -> Result<(), String> {
-    let (name, kind) = (name.trim(), thing.kind());
+/// The name that a typed text gives a thing, spaces around it aside; or what is wrong with it.
+pub fn named<'a>(scene: &Scene, thing: Thing, typed: &'a str) -> Result<&'a str, String> {
+    let (name, kind) = (typed.trim(), thing.kind());
     if name.is_empty() {
         return Err(format!("a {kind} needs a name"));
     }
-    let same = match thing {
-        Thing::Light(_) => light_names(scene).iter().position(|other| *other == name),
-        Thing::Material(_) => material_names(scene).iter().position(|other| *other == name),
-    };
-    let (Thing::Light(own) | Thing::Material(own)) = thing;
-    if same.is_some_and(|other| other != own) {
+    let same = thing.names(scene).iter().position(|other| *other == name);
+    if same.is_some_and(|other| other != thing.index()) {
         return Err(format!("there is another {kind} with the name {name}"));
     }
-    *thing.name_mut(scene) = name.to_owned();
+    Ok(name)
+}
+
+/// Gives another name, spaces around it aside; what is wrong with the name, if anything.
+pub fn rename(scene: &mut Scene, thing: Thing, name: &str) -> Result<(), String> {
+    *thing.name_mut(scene) = named(scene, thing, name)?.to_owned();
     Ok(())
 }
 
-/// Takes it out; a material that solids are made of stays, and the answer says which.
+/// Takes it out. A material that solids are made of stays, and so does a solid that others are made of:
+/// the answer says which. What a solid was made of stays, as solids of their own.
 pub fn remove(scene: &mut Scene, thing: Thing) -> Result<(), String> {
     match thing {
         Thing::Light(i) => drop(scene.lights.remove(i)),
@@ -109,8 +172,32 @@ pub fn remove(scene: &mut Scene, thing: Thing) -> Result<(), String> {
                 solid.material -= usize::from(solid.material > i);
             }
         }
+        Thing::Solid(i) => remove_solid(scene, i)?,
     }
     Ok(())
+}
+
+fn remove_solid(scene: &mut Scene, removed: usize) -> Result<(), String> {
+    let wholes: Vec<&str> =
+        wholes(scene, removed).into_iter().map(|i| scene.solids[i].name.as_str()).collect();
+    if !wholes.is_empty() {
+        let (name, list) = (&scene.solids[removed].name, listed(&wholes));
+        return Err(format!("solid {name} is part of {list}: take it out there first"));
+    }
+    scene.solids.remove(removed);
+    for solid in &mut scene.solids {
+        if let Shape::Csg { operation: _, operands } = &mut solid.shape {
+            operands.iter_mut().for_each(|operand| *operand -= usize::from(*operand > removed));
+        }
+    }
+    Ok(())
+}
+
+/// The solids that the solid with this index is an operand of.
+pub fn wholes(scene: &Scene, operand: usize) -> Vec<usize> {
+    let solids = scene.solids.iter().enumerate();
+    let is_whole = |solid: &Solid| solid.shape.operands().contains(&operand);
+    solids.filter(|(_, solid)| is_whole(solid)).map(|(i, _)| i).collect()
 }
 
 /// The solids made of the material with this index.
@@ -118,10 +205,6 @@ pub fn users(scene: &Scene, material: usize) -> Vec<usize> {
     let solids = scene.solids.iter().enumerate();
     let own = |solid: &Solid| !solid.shape.is_composite() && solid.material == material;
     solids.filter(|(_, solid)| own(solid)).map(|(i, _)| i).collect()
-}
-
-fn light_names(scene: &Scene) -> Vec<&str> {
-    scene.lights.iter().map(|light| light.name.as_str()).collect()
 }
 
 fn material_names(scene: &Scene) -> Vec<&str> {
@@ -172,6 +255,7 @@ mod tests {
 
     use super::*;
     use crate::document::patch::patch;
+    use crate::scene::fields::{SHAPES, shape_key};
     use crate::scene::read::{Known, text_with};
     use crate::scene::{check, write::tree};
 
@@ -203,12 +287,7 @@ cube = { box = { min = [0, 0, 0], max = [1, 1, 1] }, material = "blue" }
 
     /// The text that saving the edited scene gives; it reads back as that scene.
     fn saved(edited: &Scene) -> String {
-        assert_eq!(check::validate(edited), []);
-        let patched = patch(TEXT, &scene(), edited);
-        assert!(!patched.comments_lost);
-        let back = text_with(&patched.text, Path::new("s.toml"), Known::default()).unwrap();
-        assert!(tree(&back) == tree(edited));
-        patched.text
+        saved_over(TEXT, edited)
     }
 
     /// Comments that a text lacks.
@@ -314,6 +393,143 @@ cube = { box = { min = [0, 0, 0], max = [1, 1, 1] }, material = "blue" }
             ["warm", "nobody's", "half"],
             "what was said of them goes with them"
         );
+    }
+
+    /// The scene with a whole of the ball and the cube, and a whole of that.
+    fn with_wholes() -> (String, Scene) {
+        let wholes = "part = { merge = [\"ball\", \"cube\"] } # both\n\
+                      all = { union = [\"part\", \"cube\"] }\n";
+        let text = format!("{TEXT}{wholes}");
+        let scene = text_with(&text, Path::new("s.toml"), Known::default()).unwrap();
+        (text, scene)
+    }
+
+    /// The text that saving an edit of a text gives; it reads back as the edited scene.
+    fn saved_over(text: &str, edited: &Scene) -> String {
+        assert_eq!(check::validate(edited), []);
+        let before = text_with(text, Path::new("s.toml"), Known::default()).unwrap();
+        let patched = patch(text, &before, edited);
+        assert!(!patched.comments_lost);
+        let known = || Known::of(edited);
+        let back = text_with(&patched.text, Path::new("s.toml"), known()).unwrap();
+        assert!(tree(&back) == tree(edited));
+        patched.text
+    }
+
+    fn solid_names(scene: &Scene) -> Vec<&str> {
+        Thing::Solid(0).names(scene)
+    }
+
+    #[test]
+    fn every_kind_of_solid_is_added_behind_the_others_and_saved() {
+        let mut edited = scene();
+        let stand = Stand { at: DVec3::new(0.5, 0.0, 1.5), half: 0.7 };
+        for (i, key) in SHAPES.iter().enumerate() {
+            assert_eq!(add_solid(&mut edited, key, stand, 1, 0), Thing::Solid(2 + i));
+            let solid = edited.solids.last().unwrap();
+            assert_eq!((shape_key(&solid.shape), solid.name.as_str()), (*key, *key));
+            assert_eq!(solid.material, 1);
+        }
+        assert_eq!(add_solid(&mut edited, "sphere", stand, 99, 0), Thing::Solid(2 + SHAPES.len()));
+        let last = edited.solids.last().unwrap();
+        assert_eq!((last.name.as_str(), last.material), ("sphere 2", 2));
+        let text = saved(&edited);
+        assert_eq!(lost(&text), [""; 0]);
+        let line = "\nsphere = { sphere = { center = [0, 0, 0], radius = 1 }, material = \"spare\", \
+                    translate = [0.5, 0, 1.5], scale = 0.7 }\n";
+        assert!(text.contains(line), "{text}");
+        assert!(text.contains("\ndifference = { difference = [\"ball\"] }\n"), "{text}");
+    }
+
+    #[test]
+    fn the_first_solid_of_a_scene_brings_its_material() {
+        let text = "version = 1 # empty\n";
+        let mut edited = text_with(text, Path::new("s.toml"), Known::default()).unwrap();
+        let stand = Stand { at: DVec3::ZERO, half: 1.0 };
+        add_solid(&mut edited, "box", stand, 0, 0);
+        assert_eq!((edited.materials.len(), edited.solids[0].material), (1, 0));
+        assert!(saved_over(text, &edited).starts_with(text));
+    }
+
+    #[test]
+    fn a_copy_of_a_solid_stands_beside_it_and_is_made_of_the_same() {
+        let (text, mut edited) = with_wholes();
+        edited.solids[0].motion.translate = DVec3::Y;
+        let text = saved_over(&text, &edited);
+        assert_eq!(duplicate(&mut edited, Thing::Solid(0)), Thing::Solid(4));
+        assert_eq!(duplicate(&mut edited, Thing::Solid(2)), Thing::Solid(5));
+        assert_eq!(duplicate(&mut edited, Thing::Solid(5)), Thing::Solid(6));
+        let names = ["ball", "cube", "part", "all", "ball 2", "part 2", "part 3"];
+        assert_eq!(solid_names(&edited), names);
+        let [ball, copy] = [0, 4].map(|i| edited.solids[i].clone());
+        assert_eq!(copy.placement.translate, DVec3::X * 2.2);
+        let placement = ball.placement.clone();
+        assert_eq!(Solid { name: "ball".into(), placement, ..copy }, ball, "all else is the same");
+        assert_eq!(edited.solids[5].shape.operands(), [0, 1]);
+        assert_eq!(edited.solids[6].placement.translate, DVec3::X * 4.4);
+        let written = saved_over(&text, &edited);
+        assert!(written.contains("\n\"part 2\" = { merge = [\"ball\", \"cube\"]"), "{written}");
+        assert!(written.starts_with(text.trim_end()), "{written}");
+        // what is copied and deleted again leaves nothing
+        for i in [6, 5, 4] {
+            remove(&mut edited, Thing::Solid(i)).unwrap();
+        }
+        assert_eq!(saved_over(&text, &edited), text);
+    }
+
+    #[test]
+    fn an_operand_stays_and_says_of_what_and_a_whole_frees_its_operands() {
+        let (text, mut edited) = with_wholes();
+        let before = edited.clone();
+        let refused = [0, 1, 2].map(|i| remove(&mut edited, Thing::Solid(i)).unwrap_err());
+        let [ball, cube, part] = refused;
+        assert_eq!(ball, "solid ball is part of part: take it out there first");
+        assert_eq!(cube, "solid cube is part of part and all: take it out there first");
+        assert_eq!(part, "solid part is part of all: take it out there first");
+        assert!(edited == before, "what is refused changes nothing");
+        remove(&mut edited, Thing::Solid(3)).unwrap();
+        remove(&mut edited, Thing::Solid(2)).unwrap();
+        assert_eq!(solid_names(&edited), ["ball", "cube"]);
+        assert_eq!(edited.is_operand(), [false, false]);
+        assert_eq!(saved_over(&text, &edited), TEXT);
+    }
+
+    #[test]
+    fn operands_are_the_same_solids_when_others_are_gone() {
+        let (text, mut edited) = with_wholes();
+        let Shape::Csg { operation: _, operands } = &mut edited.solids[2].shape else {
+            panic!("a whole")
+        };
+        operands.retain(|operand| *operand == 1);
+        remove(&mut edited, Thing::Solid(0)).unwrap();
+        let made_of = |whole: usize| -> Vec<&str> {
+            let operands = edited.solids[whole].shape.operands();
+            operands.iter().map(|i| edited.solids[*i].name.as_str()).collect()
+        };
+        assert_eq!((made_of(1), made_of(2)), (vec!["cube"], vec!["part", "cube"]));
+        let written = saved_over(&text, &edited);
+        assert!(written.contains("part = { merge = [\"cube\"] } # both\n"), "{written}");
+    }
+
+    #[test]
+    fn a_solid_is_renamed_wherever_it_stands_and_names_stay_unique() {
+        let (text, mut edited) = with_wholes();
+        let refused = rename(&mut edited, Thing::Solid(0), "cube").unwrap_err();
+        assert_eq!(refused, "there is another solid with the name cube");
+        assert_eq!(rename(&mut edited, Thing::Solid(0), "red"), Ok(()), "a material's is free");
+        rename(&mut edited, Thing::Solid(1), "the cube").unwrap();
+        let expected = text.replace("ball", "red").replace("\"cube\"", "\"the cube\"");
+        assert_eq!(saved_over(&text, &edited), expected.replace("cube =", "\"the cube\" ="));
+    }
+
+    #[test]
+    fn all_solids_may_go_and_no_reference_is_left() {
+        let (text, mut edited) = with_wholes();
+        for i in (0..4).rev() {
+            remove(&mut edited, Thing::Solid(i)).unwrap();
+        }
+        assert!(edited.solids.is_empty());
+        saved_over(&text, &edited);
     }
 
     #[test]

@@ -35,7 +35,7 @@ use super::screen::{Screen, wake};
 use super::status::status_ui;
 use super::style;
 use super::thumbs::Noted;
-use super::values::paths;
+use super::values::{followed, paths};
 use super::welcome::Welcome;
 use crate::document::arrangement::Part;
 use crate::document::recovery::Recovery;
@@ -228,7 +228,7 @@ impl App {
         commands.extend(self.palette_ui(&ctx));
         self.keys_ui(&ctx);
         for command in commands {
-            self.run(&ctx, command);
+            self.heed(&ctx, command);
         }
         self.watch_costs();
         self.ask_pixels();
@@ -474,14 +474,17 @@ impl App {
     fn pick(&mut self, point: [f64; 2], edited: &Scene, itself: bool) {
         let (Some(picked), Some(shown)) = (self.live.pick(point), &self.shown) else { return };
         self.before_pick = Some((self.selection, self.picked));
-        self.picked = Some(picked.solid);
-        // The picture may show an earlier scene, whose materials had other indices.
-        let name = shown.scene.materials.get(picked.material).map(|material| &material.name);
-        let today = edited.materials.iter().position(|material| Some(&material.name) == name);
-        self.selection = match itself {
-            true => Selection::Solid(picked.solid),
-            false => Selection::Material(today.unwrap_or(picked.material)),
+        // The picture may show an earlier scene, whose things had other indices.
+        let today = |selection: Selection| match selection.within(&shown.scene) {
+            Selection::Scene => selection.within(edited),
+            known => followed(&shown.scene, edited, known),
         };
+        let solid = today(Selection::Solid(picked.solid));
+        self.picked = match solid {
+            Selection::Solid(i) => Some(i),
+            _ => None,
+        };
+        self.selection = if itself { solid } else { today(Selection::Material(picked.material)) };
     }
 
     /// Makes an edited scene the document's, unless it makes no sense.
@@ -489,10 +492,26 @@ impl App {
         match flaw(self.document.scene(), &edited) {
             Some(message) => self.notices.error(message),
             None => {
+                let before = self.document.shared_scene();
                 self.document.change(edited);
+                self.follow_names(&before);
                 self.show_scene();
             }
         }
+    }
+
+    /// The same things are selected and picked as before, though others came or went.
+    pub(super) fn follow_names(&mut self, before: &Scene) {
+        let after = self.document.scene();
+        let picked = |solid: usize| match followed(before, after, Selection::Solid(solid)) {
+            Selection::Solid(solid) => Some(solid),
+            _ => None,
+        };
+        self.before_pick = self
+            .before_pick
+            .map(|(selection, solid)| (followed(before, after, selection), solid.and_then(picked)));
+        self.selection = followed(before, after, self.selection);
+        self.picked = self.picked.and_then(picked);
     }
 
     /// Passes the document's scene to the session.

@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3, dvec2};
 
+use crate::document::placing::tidy;
 use crate::forest::camera::{Seen, View};
 use crate::scene::{Camera, LightPlace};
 
@@ -126,20 +127,6 @@ fn turned(view: &View, along: DVec3, moved: DVec2) -> Option<DVec3> {
 /// What a screen tells apart on the globe, in radians.
 const FINEST_TURN: f64 = 0.005;
 
-/// A point within a quarter of a pixel, in few decimal digits: it will stand in the scene file.
-fn tidy(point: DVec3, pixel: f64) -> DVec3 {
-    let digits = (4.0 / pixel).log10().ceil().clamp(-15.0, 15.0) as i32;
-    let rounded = |x: f64| match usize::try_from(digits) {
-        Ok(digits) => format!("{x:.digits$}").parse().unwrap_or(x),
-        Err(_) => {
-            let step = 10f64.powi(-digits);
-            (x / step).round() * step
-        }
-    };
-    // -0 becomes 0
-    DVec3::from(point.to_array().map(|x| rounded(x) + 0.0))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -227,13 +214,5 @@ mod tests {
             let LightPlace::Direction(opposite) = turn(2.0) else { panic!("it stays a direction") };
             assert!((opposite + forward * 3.0).length() < 0.02, "{opposite}");
         }
-    }
-
-    #[test]
-    fn numbers_have_no_more_digits_than_a_pixel_needs() {
-        let third = DVec3::new(1.0 / 3.0, -2e5 / 3.0, -1e-9);
-        assert_eq!(tidy(third, 0.01), DVec3::new(0.333, -66_666.667, 0.0));
-        assert_eq!(tidy(third, 5000.0), DVec3::new(0.0, -67_000.0, 0.0));
-        assert!(tidy(third, 0.01).z.is_sign_positive());
     }
 }

@@ -2,6 +2,7 @@
 
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 
+use super::shapes::KINDS;
 use crate::document::arrangement::Part;
 use crate::document::settings::Theme;
 
@@ -36,11 +37,13 @@ pub(super) enum Command {
     AddLight,
     /// Adds a material.
     AddMaterial,
-    /// Copies the selected light or material.
+    /// Adds a solid of the kind with this index in [`KINDS`].
+    AddSolid(usize),
+    /// Copies the selected light, material or solid.
     Duplicate,
-    /// Gives the selected light or material another name.
+    /// Gives it another name.
     Rename,
-    /// Takes the selected light or material out.
+    /// Takes it out.
     Delete,
     /// Gives the selected material to the solid clicked last.
     Assign,
@@ -160,6 +163,7 @@ impl Command {
             Command::Redo => "Redo",
             Command::AddLight => "Add light",
             Command::AddMaterial => "Add material",
+            Command::AddSolid(kind) => KINDS.get(kind).map_or("Add solid", |kind| kind.name),
             Command::Duplicate => "Duplicate",
             Command::Rename => "Rename",
             Command::Delete => "Delete",
@@ -226,9 +230,15 @@ impl Command {
             Command::Redo => "Makes the change again that was taken back last",
             Command::AddLight => "Adds a white light at the upper left of the picture",
             Command::AddMaterial => "Adds a matt white material, which no solid uses yet",
-            Command::Duplicate => "Adds a copy under another name",
+            Command::AddSolid(kind) => KINDS.get(kind).map_or("", |kind| kind.about),
+            Command::Duplicate => {
+                "Adds a copy under another name; a solid's stands beside it, made of the same"
+            }
             Command::Rename => "Changes the name here and wherever the scene file uses it",
-            Command::Delete => "Takes it out of the scene; a material must not be in use",
+            Command::Delete => {
+                "Takes it out of the scene; a material must not be in use, a solid no part of another. \
+                 What a deleted solid was made of stays, as solids of their own"
+            }
             Command::Assign => "Gives this material to the solid that was clicked last",
             Command::CopyMaterial => "Copies its values, as a scene file writes them",
             Command::PasteMaterial => {
@@ -340,6 +350,7 @@ impl Command {
             | Command::Keep
             | Command::AddLight
             | Command::AddMaterial
+            | Command::AddSolid(_)
             | Command::Assign
             | Command::CopyMaterial
             | Command::PasteMaterial
@@ -384,7 +395,7 @@ impl Command {
     }
 
     /// Every command, in the order of the menus.
-    pub(super) const ALL: [Command; 84] = [
+    pub(super) const ALL: [Command; 102] = [
         Command::New(0),
         Command::New(1),
         Command::New(2),
@@ -423,6 +434,24 @@ impl Command {
         Command::Redo,
         Command::AddLight,
         Command::AddMaterial,
+        Command::AddSolid(0),
+        Command::AddSolid(1),
+        Command::AddSolid(2),
+        Command::AddSolid(3),
+        Command::AddSolid(4),
+        Command::AddSolid(5),
+        Command::AddSolid(6),
+        Command::AddSolid(7),
+        Command::AddSolid(8),
+        Command::AddSolid(9),
+        Command::AddSolid(10),
+        Command::AddSolid(11),
+        Command::AddSolid(12),
+        Command::AddSolid(13),
+        Command::AddSolid(14),
+        Command::AddSolid(15),
+        Command::AddSolid(16),
+        Command::AddSolid(17),
         Command::Duplicate,
         Command::Rename,
         Command::Delete,
@@ -471,7 +500,7 @@ impl Command {
         Command::Resume,
     ];
 
-    /// The commands about the selected light or material.
+    /// The commands about the selected light, material or solid.
     pub(super) const ON_THINGS: [Command; 6] = [
         Command::Duplicate,
         Command::Rename,
@@ -544,6 +573,7 @@ mod tests {
         assert_eq!(count(&|c| matches!(c, Command::OpenRecent(_))), MOST_RECENT);
         assert_eq!(count(&|c| matches!(c, Command::Example(_))), EXAMPLES.len());
         assert_eq!(count(&|c| matches!(c, Command::TextSize(_))), TEXT_SIZES.len());
+        assert_eq!(count(&|c| matches!(c, Command::AddSolid(_))), KINDS.len());
         assert_eq!(count(&|c| c.part().is_some()), Part::ALL.len());
     }
 }

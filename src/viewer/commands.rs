@@ -7,6 +7,7 @@ use eframe::egui::{Context, Id, Popup, ViewportCommand};
 use super::app::App;
 use super::command::{Command, TEXT_SIZES};
 use super::palette::Palette;
+use super::shapes::addition_refusal;
 use super::slider;
 use super::style;
 
@@ -56,6 +57,15 @@ impl App {
         pressed.collect()
     }
 
+    /// Does what a command says, or says why it cannot be done: keys are pressed whatever there is.
+    pub(super) fn heed(&mut self, ctx: &Context, command: Command) {
+        match self.refusal(command) {
+            // Escape leaves whatever there is to leave, also nothing.
+            Some(why) if command != Command::Stop => self.notices.say(why),
+            _ => self.run(ctx, command),
+        }
+    }
+
     /// A gesture ends when no button is down, and wheel and keys rest.
     pub(super) fn end_gesture(&mut self, ctx: &Context) {
         let lasts = self.run.is_some_and(|(_, until)| Instant::now() < until);
@@ -75,7 +85,7 @@ impl App {
     }
 
     /// Does what a command says.
-    pub(super) fn run(&mut self, ctx: &Context, command: Command) {
+    fn run(&mut self, ctx: &Context, command: Command) {
         let dots = ctx.pixels_per_point();
         if let Some(part) = command.part() {
             let open = self.open_flag(part);
@@ -86,7 +96,9 @@ impl App {
             Command::Undo | Command::Redo => {
                 self.document.end_gesture();
                 let undo = command == Command::Undo;
+                let before = self.document.shared_scene();
                 if if undo { self.document.undo() } else { self.document.redo() } {
+                    self.follow_names(&before);
                     self.show_scene();
                 }
             }
@@ -121,7 +133,7 @@ impl App {
         }
     }
 
-    /// The commands about the window's look, about lights and materials, and about files.
+    /// The commands about the window's look, about lights, materials and solids, and about files.
     fn run_elsewhere(&mut self, ctx: &Context, command: Command) {
         match command {
             Command::Colours(theme) => {
@@ -144,6 +156,7 @@ impl App {
                 self.panels.outline |= command == Command::Rename;
                 self.run_on_things(command);
             }
+            Command::AddSolid(kind) => self.add_solid(ctx, kind),
             Command::CopyMaterial | Command::PasteMaterial => self.run_on_clipboard(ctx, command),
             _ => self.run_file_command(ctx, command),
         }
@@ -186,6 +199,9 @@ impl App {
             | Command::CopyMaterial
             | Command::PasteMaterial => {
                 self.subject().offer(command, self.document.scene()).refusal?
+            }
+            Command::AddSolid(kind) => {
+                addition_refusal(self.subject(), kind, self.document.scene())?
             }
             Command::Stop if self.live.status().job.is_none() => "Nothing runs",
             Command::Resume if !self.live.status().held => "Nothing was stopped",

@@ -27,6 +27,8 @@ pub enum Purpose {
     LocateImage,
     /// An image to show on a surface or as the background.
     Image,
+    /// A mesh to make a solid of.
+    Mesh,
     /// Another program's file to import.
     Import,
 }
@@ -42,6 +44,7 @@ impl Purpose {
             Purpose::LocateMesh => "Find the mesh",
             Purpose::LocateImage => "Find the image",
             Purpose::Image => "Pick an image",
+            Purpose::Mesh => "Pick a mesh",
             Purpose::Import => "Import a file",
         }
     }
@@ -57,7 +60,7 @@ impl Purpose {
             Purpose::Open => ("Scenes, and pictures with theirs", &["toml", "png", "exr", "hdr"]),
             Purpose::Save | Purpose::SaveImported => ("Rayforest scenes", &["toml"]),
             Purpose::Export => ("Pictures", &["png", "exr", "hdr"]),
-            Purpose::LocateMesh => ("Meshes", &["obj"]),
+            Purpose::LocateMesh | Purpose::Mesh => ("Meshes", &["obj"]),
             Purpose::LocateImage | Purpose::Image => ("Images", &["png", "jpg", "jpeg", "hdr"]),
             Purpose::Import => ("OBJ, glTF and NFF", &ENDINGS),
         }

@@ -21,6 +21,7 @@ use crate::document::recovery::Found;
 use crate::document::watch::{OnDisk, Watched};
 use crate::document::{Document, DocumentError, Missing, Save, TEMPLATES};
 use crate::scene::Scene;
+use crate::scene::mesh::{Mesh, MeshError};
 use crate::scene::texture::{Image, ImageError};
 use crate::session::live::Export;
 
@@ -57,6 +58,8 @@ pub(super) enum For {
     Locate { source: Source, located: Located, missing: String },
     /// To show the image that it holds.
     Image(ImageFor),
+    /// To make a solid of the mesh that it holds.
+    Mesh,
     /// To import it.
     Import,
     /// To write the scene of this file of another program to it.
@@ -124,6 +127,10 @@ pub(super) enum Done {
         path: PathBuf,
         place: ImageFor,
         result: Box<Result<Image, ImageError>>,
+    },
+    Mesh {
+        path: PathBuf,
+        result: Result<Mesh, MeshError>,
     },
     Imported(ImportDone),
     /// Another program changed a file.
@@ -374,6 +381,7 @@ impl App {
                 }
             }
             For::Image(place) => self.read_image(ctx, file, place),
+            For::Mesh => self.read_mesh(ctx, file),
             For::Import => self.ask_import_target(ctx, file),
             For::ImportTo(source) => self.import(ctx, source, &file),
             For::Locate { source, mut located, missing } => {
@@ -456,6 +464,7 @@ impl App {
             }
             Done::Saved { result: Err(error), .. } => self.notices.error(error.message),
             Done::Image { path, place, result } => self.image_read(&path, &place, *result),
+            Done::Mesh { path, result } => self.mesh_read(&path, result),
             Done::Imported(done) => self.imported(done),
             Done::OnDisk(change) => self.changed_on_disk(change),
             Done::Kept(Ok(())) => self.files.discard_recovered(),

@@ -15,7 +15,7 @@ use super::paints::{ImageFor, kinds_ui};
 use super::presets::Presets;
 use super::values::{Defaults, same_name, texts, visit};
 use crate::document::presets::give;
-use crate::document::things::{Thing, users};
+use crate::document::things::{Thing, users, wholes};
 use crate::scene::Scene;
 use crate::scene::fields::{self, Need, Visit};
 use crate::scene::path::join;
@@ -41,29 +41,25 @@ impl From<Thing> for Selection {
         match thing {
             Thing::Light(i) => Selection::Light(i),
             Thing::Material(i) => Selection::Material(i),
+            Thing::Solid(i) => Selection::Solid(i),
         }
     }
 }
 
 impl Selection {
-    /// The light or material that is selected.
+    /// The light, material or solid that is selected.
     pub(super) fn thing(self) -> Option<Thing> {
         match self {
             Selection::Light(i) => Some(Thing::Light(i)),
             Selection::Material(i) => Some(Thing::Material(i)),
-            Selection::Scene | Selection::Solid(_) => None,
+            Selection::Solid(i) => Some(Thing::Solid(i)),
+            Selection::Scene => None,
         }
     }
 
     /// The same selection, or the whole scene if there is no such thing in it.
     pub(super) fn within(self, scene: &Scene) -> Selection {
-        let exists = match self {
-            Selection::Scene => true,
-            Selection::Light(i) => i < scene.lights.len(),
-            Selection::Material(i) => i < scene.materials.len(),
-            Selection::Solid(i) => i < scene.solids.len(),
-        };
-        if exists { self } else { Selection::Scene }
+        if self.thing().is_none_or(|thing| thing.is_in(scene)) { self } else { Selection::Scene }
     }
 
     /// What is selected, with its name.
@@ -204,10 +200,8 @@ fn solid_links_ui(ui: &mut Ui, scene: &Scene, index: usize, outcome: &mut Outcom
         }
         None => drop(ui.weak("Its operands keep their materials")),
     }
-    let wholes = scene.solids.iter().enumerate();
-    let wholes = wholes.filter(|(_, whole)| whole.shape.operands().contains(&index));
-    for (i, whole) in wholes.take(MOST_LINKS) {
-        let link = ui.link(format!("Part of {}", whole.name));
+    for i in wholes(scene, index).into_iter().take(MOST_LINKS) {
+        let link = ui.link(format!("Part of {}", scene.solids[i].name));
         if link.on_hover_text("Shows the solid that is made of it").clicked() {
             outcome.select = Some(Selection::Solid(i));
         }
@@ -217,7 +211,7 @@ fn solid_links_ui(ui: &mut Ui, scene: &Scene, index: usize, outcome: &mut Outcom
 /// Most solids of a material that are linked to.
 const MOST_LINKS: usize = 6;
 
-/// What can be done with the whole light or material.
+/// What can be done with the whole light, material or solid.
 fn things_ui(
     ui: &mut Ui,
     scene: &Scene,

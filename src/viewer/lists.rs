@@ -1,4 +1,4 @@
-//! What is done with whole lights and materials: added, copied, renamed, deleted, assigned.
+//! What is done with whole lights, materials and solids: added, copied, renamed, deleted, assigned.
 
 use eframe::egui::{Button, Response, Ui};
 
@@ -12,7 +12,7 @@ use crate::forest::camera::View;
 use crate::scene::Scene;
 use crate::scene::path::join;
 
-/// What a command about a light or a material would do now.
+/// What a command about a light, a material or a solid would do now.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Offer {
     /// Such as `Delete light key`.
@@ -21,7 +21,7 @@ pub(super) struct Offer {
     pub(super) refusal: Option<&'static str>,
 }
 
-/// What commands about lights and materials are about.
+/// What commands about lights, materials and solids are about.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Subject {
     /// What is selected.
@@ -53,7 +53,8 @@ impl Subject {
                 Offer { name, refusal: None }
             }
             None => {
-                Offer { name: verb.into(), refusal: Some("Select a light or a material first") }
+                let refusal = Some("Select a light, a material or a solid first");
+                Offer { name: verb.into(), refusal }
             }
         }
     }
@@ -98,12 +99,12 @@ pub(super) fn offer_ui(
 }
 
 impl App {
-    /// What commands about lights and materials are about.
+    /// What commands about lights, materials and solids are about.
     pub(super) fn subject(&self) -> Subject {
         Subject { selection: self.selection, picked: self.picked }
     }
 
-    /// Does what a command about lights and materials says, as one step.
+    /// Does what a command about lights, materials and solids says, as one step.
     pub(super) fn run_on_things(&mut self, command: Command) {
         let mut scene = self.document.scene().clone();
         let selection = self.selection.within(&scene);
@@ -131,7 +132,7 @@ impl App {
             _ => return,
         };
         self.step(scene);
-        self.selection = select.within(self.document.scene());
+        self.select(Some(select.within(self.document.scene())));
     }
 
     /// Takes an edit as a step of its own.
@@ -158,6 +159,7 @@ fn neighbour(selection: Selection, scene: &Scene) -> Selection {
     let next = match selection {
         Selection::Light(i) => before(i, scene.lights.len()).map(Selection::Light),
         Selection::Material(i) => before(i, scene.materials.len()).map(Selection::Material),
+        Selection::Solid(i) => before(i, scene.solids.len()).map(Selection::Solid),
         other => Some(other),
     };
     next.unwrap_or(Selection::Scene)
@@ -182,7 +184,9 @@ mod tests {
         let delete = offer(Selection::Light(0), None, Command::Delete);
         assert_eq!(delete, Offer { name: "Delete light key".into(), refusal: None });
         assert!(offer(Selection::Light(7), None, Command::Delete).refusal.is_some());
-        assert!(offer(Selection::Solid(0), None, Command::Duplicate).refusal.is_some());
+        let duplicate = offer(Selection::Solid(0), None, Command::Duplicate);
+        assert_eq!(duplicate, Offer { name: "Duplicate solid ball".into(), refusal: None });
+        assert!(offer(Selection::Scene, None, Command::Duplicate).refusal.is_some());
         let assign = offer(Selection::Material(1), Some(0), Command::Assign);
         assert_eq!(assign, Offer { name: "Assign blue to ball".into(), refusal: None });
         assert!(offer(Selection::Material(0), Some(0), Command::Assign).refusal.is_some());
@@ -195,6 +199,7 @@ mod tests {
         let mut scene = scene();
         assert_eq!(neighbour(Selection::Material(2), &scene), Selection::Material(1));
         assert_eq!(neighbour(Selection::Material(0), &scene), Selection::Material(0));
+        assert_eq!(neighbour(Selection::Solid(1), &scene), Selection::Solid(0));
         scene.lights.clear();
         assert_eq!(neighbour(Selection::Light(0), &scene), Selection::Scene);
     }

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{
-    Align2, Color32, FontId, Key, Painter, Pos2, Rect, Response, Role, ScrollArea, Sense, Stroke,
-    StrokeKind, TextEdit, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Align2, Color32, FontId, Key, Label, Painter, Pos2, Rect, Response, RichText, Role, ScrollArea,
+    Sense, Stroke, StrokeKind, TextEdit, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2,
+    vec2,
 };
 
 use super::app::App;
@@ -70,6 +71,8 @@ struct Renaming {
     from: String,
     text: String,
     focused: bool,
+    /// Whether Enter was pressed with a name that does not do.
+    is_refused: bool,
 }
 
 /// What the person did in the strip.
@@ -174,7 +177,7 @@ impl Strip {
             if let Some(name) = &card.name
                 && let Some(field) = self.renaming.as_mut().filter(|field| field.from == *name)
             {
-                if let Some(left) = field.ui(ui) {
+                if let Some(left) = ui.vertical(|ui| field.ui(ui, scene)).inner {
                     outcome.rename = left.map(|to| (name.clone(), to));
                     self.renaming = None;
                 }
@@ -349,11 +352,13 @@ pub(super) fn caption(painter: &Painter, text: &str, left: Pos2, room: f32, colo
 
 impl Renaming {
     fn of(name: &str) -> Renaming {
-        Renaming { from: name.to_owned(), text: name.to_owned(), focused: false }
+        let (from, text) = (name.to_owned(), name.to_owned());
+        Renaming { from, text, focused: false, is_refused: false }
     }
 
-    /// Shows the field; when it is left, the name, or `None` after Escape.
-    fn ui(&mut self, ui: &mut Ui) -> Option<Option<String>> {
+    /// Shows the field; when it is left, the name, or `None` after Escape. Enter with a name that does
+    /// not do leaves it open and says why below it.
+    fn ui(&mut self, ui: &mut Ui, scene: &Scene) -> Option<Option<String>> {
         let field = TextEdit::singleline(&mut self.text).desired_width(THUMB[0] as f32);
         let response = ui.add(field).accessible_name(format!("name of look {}", self.from));
         let response = response.on_hover_text("Enter takes the name, Escape keeps the old one");
@@ -361,10 +366,32 @@ impl Renaming {
             response.request_focus();
             return None;
         }
-        let escaped = ui.input(|input| input.key_pressed(Key::Escape));
         let name = self.text.trim().to_owned();
-        response.lost_focus().then(|| Some(name).filter(|name| !escaped && !name.is_empty()))
+        let refusal = refusal(scene, &self.from, &name);
+        let pressed = |key| ui.input(|input| input.key_pressed(key));
+        let (escaped, entered) = (pressed(Key::Escape), pressed(Key::Enter));
+        if response.lost_focus() && entered && refusal.is_some() {
+            response.request_focus();
+            self.is_refused = true;
+        } else if response.lost_focus() {
+            return Some(Some(name).filter(|name| !escaped && !name.is_empty()));
+        }
+        if let Some(refusal) = refusal.filter(|_| self.is_refused) {
+            ui.set_max_width(THUMB[0] as f32);
+            let refusal = RichText::new(refusal).color(ui.visuals().error_fg_color);
+            ui.add(Label::new(refusal).wrap());
+        }
+        None
     }
+}
+
+/// What is wrong with another name for a look, if anything.
+fn refusal(scene: &Scene, from: &str, to: &str) -> Option<String> {
+    if to.is_empty() {
+        return Some("a look needs a name".to_owned());
+    }
+    let is_taken = to != from && scene.looks.find(to).is_some();
+    is_taken.then(|| format!("there is a look `{to}` already: choose another name"))
 }
 
 impl App {
@@ -425,9 +452,8 @@ impl App {
     }
 
     fn rename_look(&mut self, scene: &Scene, from: &str, to: &str) {
-        if scene.looks.find(to).is_some() {
-            self.notices.error(format!("there is a look `{to}` already: choose another name"));
-            return;
+        if let Some(refusal) = refusal(scene, from, to) {
+            return self.notices.error(refusal);
         }
         let mut edited = scene.clone();
         edited.looks.rename(from, to);

@@ -8,6 +8,7 @@ use super::command::{Command, TEXT_SIZES, keys_text};
 use super::inspector::Selection;
 use super::keep::KeepOffer;
 use super::lists::{Subject, offer_ui};
+use super::shapes::{ADD_SOLID, shapes_ui};
 use crate::document::settings::Theme;
 use crate::document::{Document, TEMPLATES};
 use crate::scene::Scene;
@@ -22,7 +23,7 @@ pub(super) struct MenuState<'a> {
     pub(super) is_on: &'a dyn Fn(Command) -> bool,
     /// Why a command cannot be done now, if it cannot.
     pub(super) refusal: &'a dyn Fn(Command) -> Option<String>,
-    /// What commands about lights and materials are about.
+    /// What commands about lights, materials and solids are about.
     pub(super) subject: Subject,
     /// Whether what was traced can be kept.
     pub(super) keep: KeepOffer,
@@ -37,7 +38,7 @@ pub(super) fn menu_ui(ui: &mut Ui, state: &MenuState<'_>) -> Option<Command> {
             .on_hover_text("Open, save, export");
         ui.menu_button("Edit", |ui| edit_menu(ui, state, &mut chosen))
             .response
-            .on_hover_text("Undo and redo; lights and materials");
+            .on_hover_text("Undo and redo; lights, materials and solids");
         ui.menu_button("Picture", |ui| items(ui, &PICTURE, state, &mut chosen))
             .response
             .on_hover_text("Brightness, clipping, the part that is traced first");
@@ -149,20 +150,24 @@ fn edit_menu(ui: &mut Ui, state: &MenuState<'_>, chosen: &mut Option<Command>) {
     ui.separator();
     item(ui, Command::AddLight, chosen);
     item(ui, Command::AddMaterial, chosen);
+    let add = ui.menu_button("Add solid", |ui| {
+        shapes_ui(ui, state.subject, state.document.scene(), chosen);
+    });
+    add.response.on_hover_text(ADD_SOLID);
     ui.separator();
     things_ui(ui, state.subject, state.document.scene(), chosen);
 }
 
-/// The commands about a light or a material, as items of a menu.
+/// The commands about a light, a material or a solid, as items of a menu.
 pub(super) fn things_ui(
     ui: &mut Ui,
     subject: Subject,
     scene: &Scene,
     chosen: &mut Option<Command>,
 ) {
-    let is_light = matches!(subject.selection, Selection::Light(_));
+    let is_other = matches!(subject.selection, Selection::Light(_) | Selection::Solid(_));
     for command in Command::ON_THINGS {
-        if is_light && command.needs_material() {
+        if is_other && command.needs_material() {
             continue;
         }
         let offer = subject.offer(command, scene);

@@ -59,6 +59,7 @@ mod presets;
 mod question;
 mod rename;
 mod screen;
+mod shapes;
 mod slider;
 mod start;
 mod status;

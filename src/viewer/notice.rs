@@ -22,9 +22,10 @@ struct Notice {
 }
 
 impl Notices {
-    /// Something was done.
+    /// Something was done, or cannot be. What is said again is not said twice at a time.
     pub(super) fn say(&mut self, text: String) {
         log::info!("{text}");
+        self.list.retain(|n| n.until.is_none() || n.text != text);
         self.add(Notice { text, until: Some(Instant::now() + STAY) });
     }
 

@@ -7,6 +7,7 @@ use super::inspector::Selection;
 use super::lists::Subject;
 use super::menu::things_ui;
 use super::rename::{Left, Renaming};
+use super::shapes::add_solid_ui;
 use crate::color::Rgb;
 use crate::color::notation::bytes;
 use crate::document::things::Thing;
@@ -45,6 +46,7 @@ pub(super) fn outline_ui(ui: &mut Ui, scene: &Scene, lists: &mut Lists<'_>) -> O
         let open = [
             (0..scene.materials.len()).any(|i| edits(Thing::Material(i))),
             (0..scene.lights.len()).any(|i| edits(Thing::Light(i))),
+            (0..scene.solids.len()).any(|i| edits(Thing::Solid(i))),
         ];
         list_ui(ui, "Materials", (scene.materials.len(), open[0]), |ui, row| {
             let Some(i) = row else { return add_ui(ui, Command::AddMaterial, &mut outcome) };
@@ -61,15 +63,16 @@ pub(super) fn outline_ui(ui: &mut Ui, scene: &Scene, lists: &mut Lists<'_>) -> O
             let row = RowFace { name: &light.name, about, color: lamp(light) };
             thing_ui(ui, scene, &row, Thing::Light(i), lists, &mut outcome);
         });
-        list_ui(ui, "Solids", (scene.solids.len(), false), |ui, row| {
-            let Some(i) = row else { return };
+        list_ui(ui, "Solids", (scene.solids.len(), open[2]), |ui, row| {
+            let Some(i) = row else {
+                return add_solid_ui(ui, lists.subject, scene, &mut outcome.command);
+            };
             let solid = &scene.solids[i];
-            let is_selected = lists.subject.selection == Selection::Solid(i);
             let color = swatch(&scene.materials[solid.material]);
-            let about = "Shows this solid; or click it in the picture with Alt";
-            if row_ui(ui, &RowFace { name: &solid.name, about, color }, is_selected).clicked() {
-                outcome.select = Some(Selection::Solid(i));
-            }
+            let about = "Shows this solid; or click it in the picture with Alt. \
+                         A double click changes its name";
+            let row = RowFace { name: &solid.name, about, color };
+            thing_ui(ui, scene, &row, Thing::Solid(i), lists, &mut outcome);
         });
     });
     outcome
@@ -110,7 +113,7 @@ struct RowFace<'a> {
     color: Color32,
 }
 
-/// A light or a material, with what can be done with it, or the field of its name.
+/// A thing with what can be done with it, or the field of its name.
 fn thing_ui(
     ui: &mut Ui,
     scene: &Scene,
@@ -122,8 +125,9 @@ fn thing_ui(
     if let Some(field) = lists.renaming.as_mut().filter(|field| field.is_of(thing)) {
         ui.horizontal(|ui| {
             spot_ui(ui, row.color);
-            outcome.renamed = field.ui(ui, row.name).or(outcome.renamed.take());
+            outcome.renamed = field.ui(ui, scene).or(outcome.renamed.take());
         });
+        field.refusal_ui(ui, scene);
         return;
     }
     let selection = Selection::from(thing);

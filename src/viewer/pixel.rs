@@ -299,9 +299,10 @@ impl App {
         if let (Some(target), Some(face)) = (outcome.clicked, &self.pixel.face) {
             let itself = ui.input(|i| i.modifiers.alt);
             let selection = target.selection(&face.tree.scene, self.document.scene(), itself);
-            if let (Target::Surface { solid, .. }, true) = (target, selection.is_some()) {
-                self.picked =
-                    Some(solid as usize).filter(|i| *i < self.document.scene().solids.len());
+            if let (Target::Surface { .. }, Some(Selection::Solid(solid))) =
+                (target, target.selection(&face.tree.scene, self.document.scene(), true))
+            {
+                self.picked = Some(solid);
             }
             self.select(selection);
         }

@@ -1,11 +1,11 @@
 //! The field that takes the place of a name while it is changed.
 
 use eframe::egui::{
-    Key, TextEdit, Ui,
+    Key, Label, RichText, TextEdit, Ui,
     text::{CCursor, CCursorRange},
 };
 
-use crate::document::things::Thing;
+use crate::document::things::{Thing, named};
 use crate::scene::Scene;
 
 /// A name being changed.
@@ -16,12 +16,14 @@ pub(super) struct Renaming {
     text: String,
     /// Whether the field had the keyboard already.
     focused: bool,
+    /// Whether Enter was pressed with a name that does not do.
+    is_refused: bool,
 }
 
 /// How the field was left.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Left {
-    /// With a name, which may not do.
+    /// With a name; one that does not do is given up, with a message.
     With(Thing, String),
     /// By Escape.
     Without,
@@ -31,7 +33,7 @@ impl Renaming {
     /// The name of a thing that is in the scene.
     pub(super) fn new(scene: &Scene, thing: Thing) -> Renaming {
         let was = thing.name(scene).to_owned();
-        Renaming { thing, text: was.clone(), was, focused: false }
+        Renaming { thing, text: was.clone(), was, focused: false, is_refused: false }
     }
 
     /// Whether it is the name of this thing.
@@ -41,16 +43,13 @@ impl Renaming {
 
     /// Whether the thing still stands in its place in a scene: an undo may have taken it away.
     pub(super) fn is_in(&self, scene: &Scene) -> bool {
-        let there = match self.thing {
-            Thing::Light(i) => i < scene.lights.len(),
-            Thing::Material(i) => i < scene.materials.len(),
-        };
-        there && self.thing.name(scene) == self.was
+        self.thing.is_in(scene) && self.thing.name(scene) == self.was
     }
 
-    /// Shows the field; says when it is left.
-    pub(super) fn ui(&mut self, ui: &mut Ui, present: &str) -> Option<Left> {
-        let name = format!("name of {} {present}", self.thing.kind());
+    /// Shows the field; says when it is left. Enter with a name that does not do leaves it open, with
+    /// what was typed, and says why below it.
+    pub(super) fn ui(&mut self, ui: &mut Ui, scene: &Scene) -> Option<Left> {
+        let name = format!("name of {} {}", self.thing.kind(), self.thing.name(scene));
         let mut edit = TextEdit::singleline(&mut self.text).desired_width(f32::INFINITY).show(ui);
         let response = edit.response.response.clone().accessible_name(name);
         let response = response.on_hover_text("Enter takes the name, Escape keeps the old one");
@@ -66,8 +65,25 @@ impl Renaming {
         if !response.lost_focus() {
             return None;
         }
-        let escaped = ui.input(|input| input.key_pressed(Key::Escape));
-        let text = std::mem::take(&mut self.text);
-        Some(if escaped { Left::Without } else { Left::With(self.thing, text) })
+        let pressed = |key| ui.input(|input| input.key_pressed(key));
+        if pressed(Key::Escape) {
+            return Some(Left::Without);
+        }
+        if pressed(Key::Enter) && named(scene, self.thing, &self.text).is_err() {
+            self.is_refused = true;
+            response.request_focus();
+            return None;
+        }
+        Some(Left::With(self.thing, std::mem::take(&mut self.text)))
+    }
+
+    /// Says below the field why the name was not taken, until it is one that does.
+    pub(super) fn refusal_ui(&self, ui: &mut Ui, scene: &Scene) {
+        if let Err(refusal) = named(scene, self.thing, &self.text)
+            && self.is_refused
+        {
+            let refusal = RichText::new(refusal).color(ui.visuals().error_fg_color);
+            ui.add(Label::new(refusal).wrap()).scroll_to_me(None);
+        }
     }
 }

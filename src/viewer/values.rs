@@ -177,6 +177,21 @@ pub(super) fn same_name(scene: &Scene, other: &Scene, selection: Selection) -> S
     found.unwrap_or(Selection::Scene)
 }
 
+/// What is selected in a scene after an edit of which it is not known what it did: the thing of the
+/// same name, or in the same place under a new name; the whole scene if it is gone.
+pub(super) fn followed(before: &Scene, after: &Scene, selection: Selection) -> Selection {
+    let name = |scene: &Scene| {
+        let thing = selection.within(scene).thing()?;
+        Some(thing.name(scene).to_owned())
+    };
+    let Some(old) = name(before) else { return selection.within(after) };
+    let Some(new) = name(after) else { return same_name(before, after, selection) };
+    let found = if old == new { selection } else { same_name(before, after, selection) };
+    // A name that was another thing's is no new one.
+    let is_renamed = || same_name(after, before, selection) == Selection::Scene;
+    if found == Selection::Scene && is_renamed() { selection } else { found }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -211,5 +226,28 @@ mod tests {
         scene.background = Background::named("gradient");
         let up = Defaults::new(&scene, Selection::Scene).get("background.gradient.up");
         assert_eq!(up.as_deref(), Some("[0, 0, 1]"));
+    }
+
+    #[test]
+    fn what_is_selected_is_followed_by_its_name() {
+        let scene = |names: &[&str]| {
+            let solid = |name: &&str| Solid::new(*name, Shape::named("sphere"), 0);
+            Scene { solids: names.iter().map(solid).collect(), ..Scene::default() }
+        };
+        let (all, some, other) = (scene(&["a", "b", "c"]), scene(&["a", "c"]), scene(&["a", "x"]));
+        let solid = Selection::Solid;
+        let cases = [
+            (&all, &some, solid(2), solid(1), "one before it is gone"),
+            (&some, &all, solid(1), solid(2), "one before it is back"),
+            (&all, &some, solid(1), Selection::Scene, "it is gone, and another one is there"),
+            (&all, &some, solid(0), solid(0), "what is behind it is gone"),
+            (&some, &other, solid(1), solid(1), "it has another name"),
+            (&all, &scene(&["a"]), solid(2), Selection::Scene, "it and others are gone"),
+            (&all, &some, solid(7), Selection::Scene, "it never was"),
+            (&all, &some, Selection::Scene, Selection::Scene, "the scene stays"),
+        ];
+        for (before, after, selection, expected, why) in cases {
+            assert_eq!(followed(before, after, selection), expected, "{why}");
+        }
     }
 }

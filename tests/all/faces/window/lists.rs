@@ -1,4 +1,4 @@
-//! Lights and materials added, copied, renamed, deleted and assigned.
+//! Lights and materials added, copied, renamed, deleted and assigned; names of all things.
 
 use super::*;
 use crate::faces::SCENE;
@@ -25,7 +25,7 @@ impl Window {
     }
 
     /// Types a name into the field that just opened, and leaves it by a key.
-    fn type_name(&mut self, name: &str, end: Key) {
+    pub(super) fn type_name(&mut self, name: &str, end: Key) {
         self.harness.run_steps(3);
         self.write(name);
         self.key(Modifiers::NONE, end);
@@ -128,13 +128,47 @@ fn a_name_is_changed_in_its_line_and_wherever_it_stands() {
     window.type_name("other", Key::Escape);
     assert_eq!(window.lights(), ["main", "fill"], "Escape keeps the name");
     window.click("Rename");
-    window.type_name("fill", Key::Enter);
-    window.until_text("there is another light with the name fill");
-    assert_eq!(window.lights(), ["main", "fill"]);
+    window.type_name("fill", Key::Escape);
     window.undo_and_redo_all(2);
     window.save();
     let wanted = SCENE.replace("key =", "main =").replace(".mirror]", ".\"chrome ball\"]");
     assert_eq!(window.scene_text(), wanted.replace("\"mirror\"", "\"chrome ball\""));
+}
+
+#[test]
+fn a_name_that_is_taken_stays_in_its_field_with_the_reason_below() {
+    let taken = "there is another light with the name fill";
+    let mut window = Window::with_scene(SCENE, Vec::new());
+    let typed = |window: &Window| {
+        let field = Role::TextInput;
+        let node = window.harness.query_by_role_and_label(field, "name of light key")?;
+        node.accesskit_node().value()
+    };
+    window.click("key");
+    window.key(Modifiers::NONE, Key::F2);
+    window.type_name("fill", Key::Enter);
+    assert!(window.shows(taken) && window.button("Close").is_none(), "below the field");
+    assert_eq!(typed(&window).as_deref(), Some("fill"));
+    window.key(Modifiers::NONE, Key::Enter);
+    assert!(window.shows(taken) && typed(&window).is_some(), "it is still there");
+    window.write("er");
+    window.harness.run_steps(2);
+    assert!(!window.shows(taken), "this one is free");
+    assert_eq!(typed(&window).as_deref(), Some("filler"));
+    for _ in 0..2 {
+        window.key(Modifiers::NONE, Key::Backspace);
+    }
+    assert!(window.shows(taken));
+    window.key(Modifiers::NONE, Key::Escape);
+    assert!(!window.shows(taken) && typed(&window).is_none(), "Escape leaves it");
+    window.key(Modifiers::NONE, Key::F2);
+    window.type_name(" ", Key::Enter);
+    assert!(window.shows("a light needs a name"));
+    window.write("fill");
+    window.click("Scene");
+    assert!(window.shows("there is another light with the name") && typed(&window).is_none());
+    assert!(window.button("Close").is_some(), "given up, with a message");
+    assert_eq!((window.lights(), window.undo_name()), (vec!["key".into(), "fill".into()], None));
 }
 
 #[test]

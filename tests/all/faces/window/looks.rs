@@ -79,6 +79,9 @@ fn what_is_edited_while_a_look_is_worn_is_saved_in_it() {
     assert_eq!(window.scene_text(), expected);
 }
 
+/// The field in which the look that was just added gets another name.
+const NAME_FIELD: &str = "name of look look 1";
+
 #[test]
 fn looks_are_added_renamed_and_deleted() {
     let mut window = Window::with_looks();
@@ -92,6 +95,19 @@ fn looks_are_added_renamed_and_deleted() {
         (window.worn(), window.undo_name()),
         (Some("dusk"), Some("rename look look 1 → dusk"))
     );
+    window.click("+ Look");
+    window.card_menu("look look 1", "Rename look look 1");
+    for (name, why) in [("dusk", "there is a look `dusk` already"), (" ", "a look needs a name")] {
+        window.key(Modifiers::COMMAND, Key::A);
+        window.write(name);
+        window.key(Modifiers::NONE, Key::Enter);
+        assert!(window.shows(why) && window.button("Close").is_none(), "below the field: {why}");
+        assert!(window.harness.query_by_role_and_label(Role::TextInput, NAME_FIELD).is_some());
+    }
+    window.key(Modifiers::NONE, Key::Escape);
+    assert!(window.harness.query_by_role_and_label(Role::TextInput, NAME_FIELD).is_none());
+    assert_eq!(window.worn(), Some("look 1"));
+    window.card_menu("look look 1", "Delete look look 1");
     window.card_menu("look dusk", "Delete look dusk");
     assert_eq!((window.worn(), window.undo_name()), (None, Some("remove look dusk")));
 }

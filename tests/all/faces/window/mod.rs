@@ -30,6 +30,7 @@ mod pixel;
 mod presets;
 mod questions;
 mod recovery;
+mod solids;
 mod welcome;
 
 use std::path::{Path, PathBuf};

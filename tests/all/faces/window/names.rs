@@ -241,7 +241,7 @@ fn every_control_of_a_file_that_changed_on_disk_has_a_name_and_a_tooltip() {
 #[test]
 fn every_item_of_the_menu_of_a_line_has_a_name_and_a_tooltip() {
     let mut window = tall();
-    for (line, least) in [("mirror", 4), ("fill", 3)] {
+    for (line, least) in [("mirror", 4), ("ball", 3), ("fill", 3)] {
         window.click(line);
         let before = window.controls();
         window.right_click(line);
@@ -299,9 +299,11 @@ fn every_item_of_the_menu_of_a_value_has_a_name_and_a_tooltip() {
 #[test]
 fn every_item_of_the_menus_has_a_name_and_a_tooltip() {
     let mut window = tall();
-    let paths: [(&[&str], usize); 8] = [
+    let paths: [(&[&str], usize); 10] = [
         (&["File"], 7),
-        (&["Edit"], 8),
+        (&["Edit"], 9),
+        (&["Edit", "Add solid"], 18),
+        (&["+ Add solid"], 18),
         (&["Picture"], 10),
         (&["View"], 16),
         (&["Help"], 5),

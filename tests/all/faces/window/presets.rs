@@ -8,7 +8,7 @@ use super::*;
 use crate::faces::SCENE;
 
 impl Window {
-    fn scene(&self) -> &Scene {
+    pub(super) fn scene(&self) -> &Scene {
         self.app().document().scene()
     }
 
