@@ -52,8 +52,12 @@ impl Stand {
         let half = |depth: f64| neat(view.height_at(depth) * HALF);
         let target = camera.eye.distance(camera.target);
         let places = PLACES.map(|[x, y]| [width / 2.0 + x * height, height / 2.0 + y * height]);
-        let free =
-            |at: &[f64; 2]| seen(*at).is_none_or(|depth| depth > target - half(target) / 2.0);
+        // A floor that is level in the picture and goes through the place hides nothing; a ring does.
+        let nearest = target - half(target) / 8.0;
+        let clear = |at| seen(at).is_none_or(|depth| depth > nearest);
+        let free = |[x, y]: &[f64; 2]| {
+            [-HALF, 0.0, HALF].into_iter().all(|side| clear([x + side * height, *y]))
+        };
         let inside = |at: &[f64; 2]| at[0] > 0.1 * width && at[0] < 0.9 * width;
         let place = places.into_iter().find(|at| inside(at) && free(at));
         if place == Some(places[0]) {
@@ -293,6 +297,10 @@ mod tests {
                 taken.push([320.0 + x * 360.0, 180.0 + y * 360.0]);
             }
         }
+        // Beside a ring through which one sees, too.
+        let ring = |[x, _]: [f64; 2]| (30.0..60.0).contains(&(x - 320.0).abs()).then_some(6.2);
+        let ([x, _], _) = standing(&Camera::default(), &ring);
+        assert!((x - 0.33).abs() < 0.02, "{x}");
         // A narrow picture has room above the middle only.
         let hidden = |[_, y]: [f64; 2]| (y > 170.0).then_some(3.0);
         let stand = Stand::new(&Camera::default(), [60, 360], &hidden);

@@ -52,7 +52,10 @@ fn a_solid_is_added_where_it_is_seen_and_made_of_what_is_selected() {
     assert!(at.x > 1.0, "beside the ball, which stands where the camera looks at: {at}");
     window.click("mirror");
     window.menu(&["Edit", "Add solid", "Add sphere"]);
+    window.until_exact();
     window.menu(&["Edit", "Add solid", "Add sphere"]);
+    let [a, b, c] = ["box", "sphere", "sphere 2"].map(|n| window.solid(n).placement.translate);
+    assert!(a != b && b != c && c != a, "each at a place of its own: {a} {b} {c}");
     assert_eq!(window.solids(), ["floor", "ball", "box", "sphere", "sphere 2"]);
     let made_of = ["sphere", "sphere 2"].map(|name| window.solid(name).material);
     assert_eq!(made_of, [1, 1], "of the selected material, and of that of the selected solid");
