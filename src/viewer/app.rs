@@ -3,9 +3,7 @@
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-use eframe::egui::{
-    CentralPanel, Context, Frame, Margin, Panel, Ui, Vec2, ViewportCommand, Visuals,
-};
+use eframe::egui::{CentralPanel, Context, Frame, Margin, Panel, Ui, Vec2, ViewportCommand};
 
 use super::Setup;
 use super::carried::Outlined;
@@ -26,7 +24,7 @@ use super::notice::Notices;
 use super::on_disk::Changes;
 use super::outline::{Lists, OutlineOutcome, outline_ui};
 use super::palette::Palette;
-use super::panels::Panels;
+use super::panels::{Panels, filled};
 use super::picture::PictureView;
 use super::pixel::PixelPanel;
 use super::presets::Presets;
@@ -337,7 +335,8 @@ impl App {
         let panel = self.panels.panel(ui, Part::Mixer);
         let costs = self.live.costs();
         let known = MixerKnown { costs: &costs, saved: self.document.saved_scene() };
-        let shown = panel.show(ui, |ui| self.mixer.ui(ui, &mut edited.lights, &known));
+        let shown =
+            panel.show(ui, |ui| filled(ui, |ui| self.mixer.ui(ui, &mut edited.lights, &known)));
         self.panels.note(Part::Mixer, &shown.response);
         let outcome = shown.inner;
         self.mixer.open = !outcome.close;
@@ -552,11 +551,6 @@ impl App {
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         App::ui(self, ui);
-    }
-
-    /// What shows in the hair between panels whose edges lie between two pixels.
-    fn clear_color(&self, visuals: &Visuals) -> [f32; 4] {
-        visuals.panel_fill.to_normalized_gamma_f32()
     }
 
     fn on_exit(&mut self, _: Option<&eframe::glow::Context>) {

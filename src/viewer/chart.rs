@@ -9,6 +9,7 @@ use eframe::egui::{Align, Button, Context, DragValue, Layout, ProgressBar, Ui};
 use super::app::App;
 use super::chart_plot::{Curve, plot_ui, table_ui};
 use super::number::typed;
+use super::panels::filled;
 use crate::chart::{Advice, Chart, Goal, News, Wishes, measure, text_of};
 use crate::document::arrangement::Part;
 use crate::progress::Progress;
@@ -194,8 +195,6 @@ impl ChartPanel {
             ui.weak(
                 "Measures how samples, depth and cut-off change the error and the time of this scene",
             );
-            // The panel keeps its height until there is something to show.
-            ui.allocate_space(ui.available_size());
             return outcome;
         }
         let goal = Goal::Codes(self.wanted);
@@ -295,7 +294,7 @@ impl App {
             return None;
         }
         let panel = self.panels.panel(ui, Part::Chart);
-        let shown = panel.show(ui, |ui| self.chart.ui(ui, edited));
+        let shown = panel.show(ui, |ui| filled(ui, |ui| self.chart.ui(ui, edited)));
         self.panels.note(Part::Chart, &shown.response);
         let outcome = shown.inner;
         let ChartOutcome { assignments, step, close } = outcome;

@@ -10,6 +10,7 @@ use egui_plot::{HLine, Line, Plot, PlotPoints, Points};
 use super::app::App;
 use super::inspector::Selection;
 use super::number::typed;
+use super::panels::{LINE, filled};
 use crate::document::arrangement::Part;
 use crate::mass::{Goal, MassError, Measured, Properties, Report, Step, Stuff, Wishes, measure};
 use crate::progress::Progress;
@@ -138,15 +139,14 @@ impl MassPanel {
         }
         if self.steps.is_empty() {
             ui.weak("Choose a solid: its volume, centre of mass and moments of inertia are measured by parallel rays");
-            // The panel keeps its height until there is something to show.
-            ui.allocate_space(ui.available_size());
             return close;
         }
         ui.horizontal_top(|ui| {
             let width = (ui.available_width() * 0.45).max(200.0);
             convergence_ui(ui, width, &self.steps);
             if let Some(Ok(report)) = &self.found {
-                ScrollArea::both().id_salt("mass figures").show(ui, |ui| figures_ui(ui, report));
+                let figures = ScrollArea::both().id_salt("mass figures");
+                figures.min_scrolled_height(LINE).show(ui, |ui| figures_ui(ui, report));
             }
         });
         close
@@ -300,7 +300,7 @@ impl App {
         };
         let panel = self.panels.panel(ui, Part::Mass);
         let scene = self.document.scene();
-        let shown = panel.show(ui, |ui| self.mass.ui(ui, scene, solid));
+        let shown = panel.show(ui, |ui| filled(ui, |ui| self.mass.ui(ui, scene, solid)));
         self.panels.note(Part::Mass, &shown.response);
         self.mass.open = !shown.inner;
     }

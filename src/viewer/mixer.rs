@@ -11,6 +11,7 @@ use super::hints::Scale;
 use super::inspector::Selection;
 use super::kelvin::Kelvin;
 use super::number::{Edit, Face, Number, Precision};
+use super::panels::LINE;
 use crate::color::Rgb;
 use crate::scene::fields::COEFFICIENT;
 use crate::scene::path::join;
@@ -155,7 +156,7 @@ impl Mixer {
             ui.weak("The scene has no lights");
         }
         let height = ui.spacing().interact_size.y;
-        let scroll = ScrollArea::both().auto_shrink(false);
+        let scroll = ScrollArea::both().auto_shrink(false).min_scrolled_height(LINE);
         let count = lights.len();
         scroll.show_rows(ui, height, count, |ui, range| {
             self.visible = range.clone();

@@ -1,6 +1,6 @@
 //! The panels around the picture: where each lies, how large it is, and whether it shows.
 
-use eframe::egui::{Context, Panel, Response, Ui};
+use eframe::egui::{Context, Panel, Response, Sense, Ui, UiBuilder};
 
 use super::app::App;
 use super::command::Command;
@@ -9,6 +9,8 @@ use crate::document::arrangement::{Arrangement, Part};
 
 /// Share of the height that is left which a panel below the picture may take.
 const MOST: f32 = 0.6;
+/// Least height of what scrolls in a panel, in points.
+pub(super) const LINE: f32 = 20.0;
 /// Least height of the welcome in points.
 pub(super) const WELCOME: f32 = 120.0;
 /// Least height of the picture in points.
@@ -116,6 +118,15 @@ impl Panels {
             self.given.set_size(part, size.round() as u32);
         }
     }
+}
+
+/// Shows what is in a panel, which takes all of the panel's height and no more: a panel that egui finds
+/// too small for what is in it is drawn over by the next.
+pub(super) fn filled<T>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> T) -> T {
+    let space = ui.available_rect_before_wrap();
+    let shown = add(&mut ui.new_child(UiBuilder::new().max_rect(space)));
+    ui.allocate_rect(space, Sense::hover());
+    shown
 }
 
 impl App {

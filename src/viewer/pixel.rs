@@ -10,6 +10,7 @@ use eframe::egui::{
 
 use super::app::App;
 use super::inspector::Selection;
+use super::panels::{LINE, filled};
 use super::pixel_bars::bars_ui;
 use super::pixel_lines::{Line, Target, lines};
 use super::pixel_rows::rows_ui;
@@ -239,7 +240,8 @@ fn column_ui(ui: &mut Ui, name: &str, width: f32, body: impl FnOnce(&mut Ui)) {
     let size = vec2(width, ui.available_height());
     ui.allocate_ui_with_layout(size, top_down(), |ui| {
         ui.set_width(width);
-        ScrollArea::vertical().id_salt(name).auto_shrink(false).show(ui, body);
+        let column = ScrollArea::vertical().id_salt(name).auto_shrink(false);
+        column.min_scrolled_height(LINE).show(ui, body);
     });
 }
 
@@ -292,7 +294,7 @@ impl App {
         let panel = self.panels.panel(ui, Part::Pixel);
         let known = self.live.inspected();
         let today = (self.document.scene(), self.selection);
-        let shown = panel.show(ui, |ui| self.pixel.ui(ui, &known, today));
+        let shown = panel.show(ui, |ui| filled(ui, |ui| self.pixel.ui(ui, &known, today)));
         self.panels.note(Part::Pixel, &shown.response);
         let outcome = shown.inner;
         self.pixel.open = !outcome.close;

@@ -6,6 +6,7 @@ use eframe::egui::{
 };
 
 use super::inspector::Selection;
+use super::panels::LINE;
 use super::pixel::Face;
 use super::pixel_lines::{Line, Target};
 use crate::scene::Scene;
@@ -40,28 +41,24 @@ pub(super) fn rows_ui(
     let width = ui.available_width();
     columns_ui(ui, width);
     let height = ui.spacing().interact_size.y;
-    ScrollArea::vertical().id_salt("tree of the pixel").auto_shrink(false).show_rows(
-        ui,
-        height,
-        face.lines.len(),
-        |ui, range| {
-            for i in range {
-                let line = &face.lines[i];
-                let chosen = |target: Target| {
-                    let itself = matches!(selection, Selection::Solid(_));
-                    target.selection(&face.tree.scene, scene, itself) == Some(selection)
-                };
-                let selected = line.target.is_some_and(chosen);
-                let (clicked, hovered) = row_ui(ui, line, face.whole, selected);
-                if clicked {
-                    outcome.clicked = line.target;
-                }
-                if hovered {
-                    outcome.hovered = Some(i);
-                }
+    let tree = ScrollArea::vertical().id_salt("tree of the pixel").auto_shrink(false);
+    tree.min_scrolled_height(LINE).show_rows(ui, height, face.lines.len(), |ui, range| {
+        for i in range {
+            let line = &face.lines[i];
+            let chosen = |target: Target| {
+                let itself = matches!(selection, Selection::Solid(_));
+                target.selection(&face.tree.scene, scene, itself) == Some(selection)
+            };
+            let selected = line.target.is_some_and(chosen);
+            let (clicked, hovered) = row_ui(ui, line, face.whole, selected);
+            if clicked {
+                outcome.clicked = line.target;
             }
-        },
-    );
+            if hovered {
+                outcome.hovered = Some(i);
+            }
+        }
+    });
     outcome
 }
 

@@ -8,7 +8,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Duration;
 
-use eframe::egui::{IconData, Ui, ViewportBuilder, ViewportCommand};
+use eframe::egui::{IconData, Ui, ViewportBuilder, ViewportCommand, Visuals};
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use eframe::{NativeOptions, Renderer, wgpu};
 
@@ -189,6 +189,11 @@ impl eframe::App for Shell {
             true => ui.ctx().send_viewport_cmd(ViewportCommand::Close),
             false => eframe::App::ui(app, ui, frame),
         }
+    }
+
+    /// What shows in the hair between panels whose edges lie between two pixels.
+    fn clear_color(&self, visuals: &Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
     }
 
     fn on_exit(&mut self, gl: Option<&eframe::glow::Context>) {

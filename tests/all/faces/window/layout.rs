@@ -117,31 +117,63 @@ const BELOW: [(&str, &str); 5] = [
     ("Looks", "no look"),
 ];
 
+/// Holds the panels that are open to be whole, one above the other, and the picture above them to have
+/// room; which they are. `height` is the window's in points.
+#[track_caller]
+fn panels_fit(window: &Window, height: f32) -> Vec<usize> {
+    let open: Vec<usize> =
+        (0..BELOW.len()).filter(|i| window.button(BELOW[*i].1).is_some()).collect();
+    let mut last = window.view();
+    assert!(last.height() >= 99.0, "{last} of {height}");
+    for i in open.iter().rev() {
+        let mark = window.rect(Role::Button, BELOW[*i].1);
+        assert!(mark.top() >= last.bottom() - 1.0, "{} at {mark} below {last}", BELOW[*i].0);
+        // What can be resized begins at its edge: nothing is drawn over its heading.
+        let mut edges = window.harness.query_all_by_role(Role::Splitter).map(|node| node.rect());
+        let edge = edges.find(|edge| {
+            edge.width() > 600.0 && (0.0..16.0).contains(&(mark.top() - edge.center().y))
+        });
+        assert!(edge.is_some() || BELOW[*i].0 == "Looks", "{} at {mark}", BELOW[*i].0);
+        last = mark;
+    }
+    // The lowest shows a line of itself below its heading.
+    assert!(last.bottom() < height - 48.0, "{last} of {height}");
+    open
+}
+
 #[test]
 fn every_panel_fits_below_the_picture_or_the_oldest_makes_room() {
-    for (height, least) in [(720.0, 5), (560.0, 3)] {
+    for (height, least, order) in
+        [(720.0, 5, [0, 1, 2, 3, 4]), (560.0, 3, [0, 1, 2, 3, 4]), (576.0, 4, [2, 1, 0, 3, 4])]
+    {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("scene.toml");
         std::fs::write(&path, SCENE).unwrap();
         let mut window =
             Window::of_size(vec2(1280.0, height), folder, Some(path.clone()), Vec::new());
         window.until("the scene is open", |app| app.document().path() == Some(&path));
-        for (name, _) in BELOW {
-            window.menu(&["View", name]);
+        for i in order {
+            window.menu(&["View", BELOW[i].0]);
             window.harness.run_steps(3);
         }
-        let open: Vec<usize> =
-            (0..BELOW.len()).filter(|i| window.button(BELOW[*i].1).is_some()).collect();
+        let open = panels_fit(&window, height);
         assert!(open.len() >= least, "{open:?} at {height}");
         assert_eq!(open.last(), Some(&4), "the latest is open");
         assert_eq!(open.len() < 5, window.shows("made room"), "{open:?} at {height}");
-        let mut last = window.view();
-        assert!(last.height() >= 99.0, "{last} at {height}");
-        for i in open.iter().rev() {
-            let mark = window.rect(Role::Button, BELOW[*i].1);
-            assert!(mark.top() >= last.bottom() - 1.0, "{} at {mark} below {last}", BELOW[*i].0);
-            assert!(mark.bottom() < height - 20.0, "{mark}");
-            last = mark;
-        }
     }
+}
+
+#[test]
+fn panels_make_room_when_text_grows() {
+    let mut window = Window::with_scene(SCENE, Vec::new());
+    for i in [2, 1, 0, 3, 4] {
+        window.menu(&["View", BELOW[i].0]);
+        window.harness.run_steps(3);
+    }
+    assert_eq!(panels_fit(&window, 720.0).len(), 5);
+    window.menu(&["View", "Colours and size", "Size of text 125 %"]);
+    window.harness.run_steps(5);
+    let height = window.harness.ctx.content_rect().height();
+    assert_eq!(height, 576.0);
+    assert_eq!(panels_fit(&window, height), [0, 1, 3, 4]);
 }
