@@ -263,6 +263,11 @@ impl Document {
         self.refresh();
     }
 
+    /// Whether another program moved or deleted its file.
+    pub fn is_gone(&self) -> bool {
+        self.is_gone
+    }
+
     /// Notes whether its file is gone: what is here is then all there is, and counts as unsaved.
     pub fn set_gone(&mut self, is_gone: bool) {
         self.is_gone = is_gone;

@@ -63,8 +63,8 @@ pub struct App {
     pub(super) recovery: Option<Recovery>,
     /// Index of the solid that was clicked or selected last.
     pub(super) picked: Option<usize>,
-    /// The selection, and that, before the latest click in the picture.
-    before_pick: Option<(Selection, Option<usize>)>,
+    /// The selection, and that, before and after the latest click in the picture.
+    latest_pick: Option<[(Selection, Option<usize>); 2]>,
     /// The name that is being changed, if one is.
     pub(super) renaming: Option<Renaming>,
     /// Materials to choose from.
@@ -150,7 +150,7 @@ impl App {
             welcome: Welcome::default(),
             recovery,
             picked: None,
-            before_pick: None,
+            latest_pick: None,
             renaming: None,
             presets: Presets::default(),
             outlined: Outlined::default(),
@@ -432,8 +432,11 @@ impl App {
         let mut focused = false;
         if outcome.cropped && outcome.clicked.is_some() {
             // The first click of the two that took the region away was no choice.
-            (self.selection, self.picked) =
-                self.before_pick.take().unwrap_or((self.selection, self.picked));
+            if let Some([before, after]) = self.latest_pick.take()
+                && after == (self.selection, self.picked)
+            {
+                (self.selection, self.picked) = before;
+            }
         } else if let Some(point) = outcome.clicked {
             match self.picture.focus_tool {
                 true => focused = self.focus(point, &mut edited.camera),
@@ -472,7 +475,7 @@ impl App {
     /// Selects what is seen at a point of the picture: its material, or itself.
     fn pick(&mut self, point: [f64; 2], edited: &Scene, itself: bool) {
         let (Some(picked), Some(shown)) = (self.live.pick(point), &self.shown) else { return };
-        self.before_pick = Some((self.selection, self.picked));
+        let before = (self.selection, self.picked);
         // The picture may show an earlier scene, whose things had other indices.
         let today = |selection: Selection| match selection.within(&shown.scene) {
             Selection::Scene => selection.within(edited),
@@ -484,6 +487,7 @@ impl App {
             _ => None,
         };
         self.selection = if itself { solid } else { today(Selection::Material(picked.material)) };
+        self.latest_pick = Some([before, (self.selection, self.picked)]);
     }
 
     /// Makes an edited scene the document's, unless it makes no sense.
@@ -506,9 +510,7 @@ impl App {
             Selection::Solid(solid) => Some(solid),
             _ => None,
         };
-        self.before_pick = self
-            .before_pick
-            .map(|(selection, solid)| (followed(before, after, selection), solid.and_then(picked)));
+        self.latest_pick = None;
         self.selection = followed(before, after, self.selection);
         self.picked = self.picked.and_then(picked);
     }

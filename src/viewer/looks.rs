@@ -144,7 +144,11 @@ impl Strip {
                 continue;
             };
             card.class = Some(glimpse.class);
-            let Some(frame) = &glimpse.frame else { continue };
+            let Some(frame) = &glimpse.frame else {
+                // The one before shows other solids, perhaps.
+                card.thumb = None;
+                continue;
+            };
             if card.thumb.as_ref().is_none_or(|thumb| !Arc::ptr_eq(&thumb.frame, frame)) {
                 let name = format!("look {:?}", card.name);
                 let texture = texture(ui, &name, frame);
@@ -192,7 +196,7 @@ impl Strip {
                 texture: card.thumb.as_ref().map(|thumb| &thumb.texture),
                 below: card.name.as_deref().unwrap_or("No look"),
                 is_on: scene.looks.worn() == card.name.as_deref(),
-                is_dear: card.class.is_some_and(|class| class >= Class::Regrow),
+                is_dear: card.class.is_some_and(|class| class >= Class::Refold),
                 is_compared: *reference == this,
                 badge: Some((class, color)),
             };

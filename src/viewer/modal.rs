@@ -95,8 +95,14 @@ impl App {
     }
 
     fn unsaved_ui(&mut self, ui: &mut Ui, next: Next) -> Option<Modal> {
-        ui.heading(format!("Save the changes to {}?", self.document.title()));
-        ui.label("Without saving they are lost.");
+        let title = self.document.title();
+        if self.document.is_gone() {
+            ui.heading(format!("Save {title} again?"));
+            ui.label("Its file was moved or deleted: without saving the scene is lost.");
+        } else {
+            ui.heading(format!("Save the changes to {title}?"));
+            ui.label("Without saving they are lost.");
+        }
         let choices = [
             ("Save", "Saves, then goes on", Unsaved::Save),
             ("Do not save", "Gives the changes up and goes on", Unsaved::Discard),

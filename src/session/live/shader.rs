@@ -288,7 +288,7 @@ impl Shader {
             Message::Inspect(pixels) => self.curious.want(pixels),
             Message::Glance(wanted) => self.watch_glances(wanted),
             Message::MarkClipped(on) => self.mark_clipped(on),
-            Message::LookFirst(region) => self.region = region,
+            Message::LookFirst(region) => self.look_first(region),
             Message::Export(export) => self.export(export),
             Message::Staged { id, stage, divisor, session } => {
                 self.staged(id, stage, divisor, *session);
@@ -463,7 +463,7 @@ impl Shader {
             mending.mark(Some(session.frame()));
         }
         let scene = if reached { wanted } else { scene };
-        let behind = self.preview.take().filter(|before| before.stage == Stage::Coarse);
+        let behind = self.preview.take().filter(|before| before.stage <= Stage::OneSample);
         let behind = behind.map(Box::new);
         self.preview = Some(Preview { session, stage, divisor, scene, behind });
         self.show();

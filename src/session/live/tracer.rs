@@ -239,14 +239,16 @@ fn is_tiny(scene: &Scene) -> bool {
     width * height * u64::from(scene.trace.samples) < TINY_RAYS
 }
 
-/// The stages in which a scene is traced: those before the whole picture that are much quicker. The
-/// region is seen instead of the second: it is whole before the rest of the last one is traced.
+/// The stages in which a scene is traced: those before the whole picture that are much quicker. A region
+/// is whole before the rest of the last one is traced; it waits for the second only if that is a small
+/// part of all, as the rest is then seen in it for long.
 fn stages(scene: &Scene, divisor: u32, region: Option<Region>) -> Vec<Stage> {
     let mut stages = Vec::new();
     if !is_tiny(scene) && divisor > 1 {
         stages.push(Stage::Coarse);
     }
-    if !is_tiny(scene) && region.is_none() && scene.trace.samples >= FEW_SAMPLES {
+    let few = if region.is_some() { 4 * FEW_SAMPLES } else { FEW_SAMPLES };
+    if !is_tiny(scene) && scene.trace.samples >= few {
         stages.push(Stage::OneSample);
     }
     stages.push(Stage::Whole);
@@ -284,7 +286,8 @@ mod tests {
         assert_eq!(at([1280, 720], 16, 1), [OneSample, Whole]);
         assert_eq!(at([48, 32], 16, 4), [Whole]);
         let part = Some(Region { corner: [10, 10], size: [50, 50] });
-        assert_eq!(stages(&scene([1280, 720], 16), 4, part), [Coarse, Whole]);
+        assert_eq!(stages(&scene([1280, 720], 16), 4, part), [Coarse, OneSample, Whole]);
+        assert_eq!(stages(&scene([1280, 720], 8), 4, part), [Coarse, Whole]);
         assert_eq!(stages(&scene([48, 32], 16), 4, part), [Whole]);
     }
 

@@ -13,6 +13,8 @@ use crate::scene::change::Change;
 /// A first stage that takes longer than this is not finished for its own sake.
 const PATIENCE: Duration = Duration::from_millis(500);
 
+const TRACING: &str = "tracing";
+
 /// A trace that the tracer works on, or a cache that it opens.
 pub(super) struct Running {
     pub(super) id: u64,
@@ -35,7 +37,7 @@ impl Running {
         Running {
             id: 0,
             scene,
-            verb: "tracing",
+            verb: TRACING,
             reason: String::new(),
             control: Arc::default(),
             reuse: Arc::default(),
@@ -43,6 +45,11 @@ impl Running {
             dropped: false,
             mending: None,
         }
+    }
+
+    /// Whether it traces, and does not open a cache.
+    pub(super) fn is_trace(&self) -> bool {
+        self.verb == TRACING
     }
 
     /// Goes on if its rays are those of `wanted`.

@@ -58,7 +58,6 @@ fn a_region_is_whole_before_the_rest_and_follows_edits() {
     window.want(&scene);
     window.wait("the region", |w| w.newest.as_ref().is_some_and(|s| s.stage >= Stage::Region));
     assert_eq!(window.shown().stage, Stage::Region);
-    assert!(!window.stages.contains(&Stage::OneSample), "{:?}", window.stages);
     let first = window.shown().clone();
     // Shininess is another highlight, colour another term.
     let edited =
@@ -75,6 +74,23 @@ fn a_region_is_whole_before_the_rest_and_follows_edits() {
     }
     window.wait("all of it", |w| w.status.in_step);
     window.shows_whole(&edited);
+}
+
+#[test]
+fn a_region_that_is_drawn_while_all_is_traced_is_whole_before_the_rest_all_the_same() {
+    let scene = scene("glass", [160, 96], 32);
+    let region = Region { corner: [64, 32], size: [40, 30] };
+    let mut window = Window::new(OPTIONS);
+    window.want(&scene);
+    window.wait("one sample", |w| w.newest.as_ref().is_some_and(|s| s.stage >= Stage::OneSample));
+    assert_eq!(window.shown().stage, Stage::OneSample);
+    window.live.look_first(Some(region));
+    window.wait("the region", |w| w.shown().stage >= Stage::Region);
+    assert_eq!(window.shown().stage, Stage::Region);
+    assert_eq!(other_pixels(window.shown(), region)[0], 0);
+    window.wait("all of it", |w| w.status.in_step);
+    window.shows_whole(&scene);
+    assert_eq!(window.last().rays, fresh(&scene).trace_report().rays);
 }
 
 /// A window in which a region of a scene is just shown, the rest is being traced, and the camera of

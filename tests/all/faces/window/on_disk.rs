@@ -150,7 +150,7 @@ fn a_scene_whose_file_is_gone_is_unsaved_until_it_is_back_or_saved() {
     window.until_button("Save it again");
     assert!(window.app().document().is_unsaved());
     window.menu(&["File", "New", "Empty stage"]);
-    window.until_text("Save the changes to scene.toml?");
+    window.until_text("Save scene.toml again?");
     window.click("Cancel");
     std::fs::write(&file, SCENE).unwrap();
     window.until("it is back", |app| !app.document().is_unsaved());
