@@ -147,7 +147,7 @@ impl App {
         }
         let ctx = ui.ctx().clone();
         let busy =
-            self.files.is_modal() || ctx.egui_wants_keyboard_input() || Popup::is_any_open(&ctx);
+            !self.takes_keys() || ctx.egui_wants_keyboard_input() || Popup::is_any_open(&ctx);
         let escaped = !busy && ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape));
         // Not while a gesture lasts: nothing may move under the pointer.
         let is_new = self.document.is_unsaved() && !self.welcome.over_work;

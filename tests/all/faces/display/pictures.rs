@@ -148,7 +148,11 @@ fn the_pictures_of_the_readme() {
     std::fs::write(desk.file("small.toml"), scene.replace("[1280, 720]", "[320, 180]")).unwrap();
     let mut twin = Twin::new(&desk.file("small.toml"), None);
     until_cached(&desk, "thumbnails");
-    desk.click(twin.rect(Role::Button, "glass").center());
+    let line = twin.rect(Role::Button, "glass").center();
+    twin.click(line);
+    desk.click(line);
+    let heading = twin.place("Material glass");
+    desk.until_part_like(&mut twin, heading, "the material shows");
     desk.point(super::REST);
     put(&desk, "window");
     twin.press(Key::I);

@@ -186,3 +186,21 @@ fn recent_files_have_cards_with_thumbnails() {
     window.menu(&["Help", "Welcome"]);
     assert!(window.welcomes() && window.button("card scene.toml").is_none());
 }
+
+#[test]
+fn escape_leaves_what_lies_over_the_welcome_first() {
+    let mut window = fresh();
+    for (modifiers, key, text) in [
+        (Modifiers::COMMAND, Key::K, "Starts a scene from this template"),
+        (Modifiers::NONE, Key::Questionmark, "Keys and gestures"),
+    ] {
+        window.key(modifiers, key);
+        window.harness.run_steps(3);
+        assert!(window.shows(text) && window.welcomes(), "{text}: {:#?}", window.texts());
+        window.key(Modifiers::NONE, Key::Escape);
+        window.harness.run_steps(3);
+        assert!(!window.shows(text) && window.welcomes(), "{text}");
+    }
+    window.key(Modifiers::NONE, Key::Escape);
+    assert!(!window.welcomes());
+}
